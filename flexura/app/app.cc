@@ -43,19 +43,18 @@ void add_viewer_options(CLI::App& command, ViewerArguments& viewer) {
   command
       .add_option("--address", viewer.address, "Address of the interface to listen on (default: 127.0.0.1)")
       ->type_name("A");
-  command
-      .add_option("--name", viewer.names, "Another host name under which the viewer is reached (repeatable)")
+  command.add_option("--name", viewer.names, "Further host name of the viewer's address (repeatable)")
       ->type_name("HOST")
       ->allow_extra_args(false);
 }
 
 void add_new(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<NewArguments>();
-  std::string meaning = "Write a commented experiment file to begin with";
+  std::string meaning = "Write a commented experiment file as a starting point";
   CLI::App* command = add_command(app, "new", command_group::experiments, meaning,
                                   "flexura new servo\nflexura run servo.toml --view");
   std::vector<std::string> kinds;
-  std::string explained = "What to begin with (default: arm)";
+  std::string explained = "Kind of the experiment (default: arm)";
   for (const ExperimentTemplate& one : experiment_templates()) {
     kinds.emplace_back(one.kind);
     explained += fmt::format("\n{}: {}", one.kind, one.meaning);
@@ -70,7 +69,7 @@ void add_new(CLI::App& app, Command& chosen) {
 void add_view(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<ViewArguments>();
   CLI::App* view = add_command(app, "view", command_group::experiments,
-                               "See a rig or a run in the browser and move it by hand",
+                               "Show a rig or a run in the browser, and move the rig by hand",
                                "flexura view experiment.toml\nflexura view results/experiment");
   view->add_option("WHAT", arguments->what,
                    "An experiment file, or a folder made by `flexura run` (default: the paper's arm)")
@@ -183,9 +182,10 @@ void add_jog(CLI::App& app, Command& chosen) {
 
 void add_check(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* check = add_command(app, "check", command_group::experiments,
-                                "List what an experiment's motions would break, touch or not reach",
-                                "flexura check experiment.toml");
+  CLI::App* check =
+      add_command(app, "check", command_group::experiments,
+                  "List the limits and contacts of an experiment's motions, and the targets out of reach",
+                  "flexura check experiment.toml");
   add_experiment_argument(*check, arguments->experiment);
   add_set_option(*check, arguments->sets);
   check->add_flag("--json", arguments->json, "Print the findings as one JSON document");
@@ -200,7 +200,7 @@ void add_answers(CLI::App& app, Command& chosen, const std::string& name, const 
                  int (*command)(const std::string&, std::istream&, std::ostream&)) {
   auto file = std::make_shared<std::string>();
   CLI::App* answers = add_command(app, name, command_group::answers, meaning, example);
-  answers->add_option("ARM", *file, "A file with [arm]: an experiment, or an arm alone")
+  answers->add_option("ARM", *file, "A file with an [arm] table: an experiment, or only the arm")
       ->type_name("")
       ->required();
   answers->callback(
@@ -217,25 +217,29 @@ void add_identify(CLI::App& app, Command& chosen) {
       ->required();
   identify
       ->add_option("MOTION", arguments->motion,
-                   "A folder made by `flexura run`, its log (.mcap), or measured points (.csv)")
+                   "A results folder of `flexura run`, its log (.mcap), or measured points (.csv)")
       ->type_name("")
       ->required();
-  identify->add_option("--from", arguments->from, "Start of the part that is used, s (default: the start)")
+  identify
+      ->add_option("--from", arguments->from,
+                   "Start of the part of the motion to use, s (default: the motion's start)")
       ->type_name("T");
-  identify->add_option("--to", arguments->to, "End of the part that is used, s (default: the end)")
+  identify
+      ->add_option("--to", arguments->to,
+                   "End of the part of the motion to use, s (default: the motion's end)")
       ->type_name("T");
   identify
       ->add_option("--noise-mm", arguments->noise_mm,
-                   "Standard deviation of measured coordinates, mm; points of a log get such noise")
+                   "Standard deviation of measured coordinates, mm; a log's points get this noise added")
       ->type_name("N");
-  identify->add_option("--window", arguments->window, "Length of the piece of motion in one equation, s")
+  identify->add_option("--window", arguments->window, "Duration of the motion in each equation, s")
       ->type_name("S");
-  identify->add_flag("--alike", arguments->alike, "All sections have the same material");
-  identify->add_flag("--mass", arguments->mass, "Estimate a factor on the mass too");
+  identify->add_flag("--alike", arguments->alike, "Assume the same material in all sections");
+  identify->add_flag("--mass", arguments->mass, "Also estimate a factor on the mass");
   identify->add_flag("--friction", arguments->friction,
-                     "Estimate the friction coefficient of the tendons too, one for all");
+                     "Also estimate one friction coefficient for all tendons");
   add_set_option(*identify, arguments->sets);
-  identify->add_option("--seed", arguments->seed, "Seed of the noise, 0 to 1e15")
+  identify->add_option("--seed", arguments->seed, "Seed of the random noise, 0 to 1e15")
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1000000000000000}).description(""));
   identify->add_flag("--json", arguments->json, "Print JSON lines");
@@ -255,7 +259,7 @@ void add_export(CLI::App& app, Command& chosen) {
       ->required();
   command
       ->add_option("--to", arguments->format,
-                   "csv: tables; mp4, png: a film of each recorded camera (png: animated);\n"
+                   "csv: tables; mp4, png: a film of each recorded camera (as animated PNG with png);\n"
                    "gltf: the arm's motion in three dimensions")
       ->type_name("csv|mp4|png|gltf")
       ->check(CLI::IsMember({"csv", "mp4", "png", "gltf"}).description(""))
@@ -270,14 +274,14 @@ void add_export(CLI::App& app, Command& chosen) {
 void add_compare(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<CompareArguments>();
   CLI::App* compare = add_command(app, "compare", command_group::experiments,
-                                  "List what differs between the results of two runs",
+                                  "List the differences between the results of two runs",
                                   "flexura compare results/experiment results/experiment-2\n"
                                   "flexura compare results/a results/b --out page.html");
   compare->add_option("RESULTS_A", arguments->a, "A folder made by `flexura run`")->type_name("")->required();
-  compare->add_option("RESULTS_B", arguments->b, "Another one")->type_name("")->required();
+  compare->add_option("RESULTS_B", arguments->b, "Another results folder")->type_name("")->required();
   compare->add_option("--out", arguments->out, "Write a page with plots of both runs (default: none)")
       ->type_name("FILE");
-  compare->add_flag("--all", arguments->all, "List values that are equal too");
+  compare->add_flag("--all", arguments->all, "Also list equal values");
   compare->add_flag("--json", arguments->json, "Print one JSON document");
   compare->callback([&chosen, arguments] {
     chosen = [arguments] { return compare_command(*arguments, std::cout, std::cerr); };
@@ -326,7 +330,7 @@ void add_helpers(CLI::App& app, Command& chosen) {
 bool is_unknown_command(const CLI::App& app, std::string_view word) {
   if (word.starts_with('-')) {
     if (app.get_option_no_throw(std::string(word)) != nullptr) return false;
-    std::cerr << fmt::format("flexura: there is no option {} before a command (see flexura --help)\n",
+    std::cerr << fmt::format("flexura: unknown option {} before the command (see flexura --help)\n",
                              Node{std::string(word), {}}.brief());
     return true;
   }
@@ -334,7 +338,7 @@ bool is_unknown_command(const CLI::App& app, std::string_view word) {
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   if (std::ranges::count(names, word) > 0) return false;
   const std::string_view near = nearest_name(word, names);
-  std::cerr << fmt::format("flexura: there is no command {}{} (see flexura --help)\n",
+  std::cerr << fmt::format("flexura: unknown command {}{} (see flexura --help)\n",
                            Node{std::string(word), {}}.brief(),
                            near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near));
   return true;
@@ -342,7 +346,9 @@ bool is_unknown_command(const CLI::App& app, std::string_view word) {
 
 // Rejects empty values, which come from scripts with unset variables. CLI11 would read one as no value, or as
 // 0.
-std::string refuse_empty(const std::string& value) { return value.empty() ? "expected no empty text" : ""; }
+std::string refuse_empty(const std::string& value) {
+  return value.empty() ? "empty text: expected at least one character" : "";
+}
 
 void refuse_empty_values(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({}))

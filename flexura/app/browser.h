@@ -5,9 +5,9 @@
 
 namespace flexura {
 
-/// Opens a URL in the user's browser if there is a display. Other users can read the process list, so the URL
-/// is not passed as an argument. Instead, the browser opens a small file that redirects to the URL. Only this
-/// user can read the file, and the destructor deletes it.
+/// Opens a URL in the user's browser if there is a display. The browser opens a temporary file that redirects
+/// to the URL, because other users can read a program's arguments. Only this user can read the file. The
+/// destructor deletes it.
 class BrowserPage {
  public:
   explicit BrowserPage(const std::string& url);

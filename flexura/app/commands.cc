@@ -174,8 +174,9 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   if (experiment.record.cameras && !has_films && std::ranges::any_of(result.outcomes, is_recorded))
     print_line(
         err, "note",
-        fmt::format("the log has all pictures; for a film install {0} and run: flexura export {1} --to mp4",
-                    film_program, folder.string()));
+        fmt::format(
+            "the log contains all pictures; to make a film, install {0} and run: flexura export {1} --to mp4",
+            film_program, folder.string()));
   write_timing(folder, started, std::chrono::duration<double>(Clock::now() - start).count(), result.summary);
   for (std::size_t i = 0; i < result.reasons.size(); ++i) {
     // After the reason of a cancellation come the reasons why the run was unsafe.
@@ -206,7 +207,7 @@ int check_command(const CheckArguments& arguments, std::ostream& out, std::ostre
   const SafetyReport report = check_experiment_safety(experiment, *link);
   progress.clear();
   if (link->is_cancelled()) {
-    print_line(err, "cancelled", "it was stopped before the check was complete");
+    print_line(err, "cancelled", "the check was stopped before it was complete");
     return exit_of_signal(stoppable.received_signal());
   }
   if (arguments.json) {

@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// The program's exit statuses (docs/command-line.md).
+/// Exit statuses of the program (docs/command-line.md).
 enum ExitStatus : int { exit_done = 0, exit_missed = 1, exit_bad_input = 2, exit_system_failure = 3 };
 /// Returns the exit status that a shell reports for a program that a signal ended.
 [[nodiscard]] constexpr int exit_of_signal(int signal) { return 128 + signal; }

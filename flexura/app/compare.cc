@@ -154,7 +154,7 @@ Node summary_in(const std::string& folder) {
   constexpr std::size_t most_bytes = std::size_t{1} << 28;
   Node summary = parse_json(read_text_file(file, most_bytes), file.string());
   if (summary.find("outcome") == nullptr)
-    throw input_error(file.string(), "expected the summary of a run: it has no outcome");
+    throw input_error(file.string(), "the summary has no outcome: expected the summary of a run");
   return summary;
 }
 

@@ -27,14 +27,14 @@ struct ComparedValue {
   [[nodiscard]] bool is_equal() const;
 };
 
-/// Returns the values of two summaries in the order of the first summary, then the values that only the
-/// second has. Items of a list of tables are matched by their `name` (or `task`). Lists of tables without
-/// such a key are left out.
+/// Returns pairs of values of two summaries, in the order of the first summary. Values that only the second
+/// summary has follow. Items of a list of tables are matched by their `name` (or `task`). Lists of tables
+/// without such a key are omitted.
 [[nodiscard]] std::vector<ComparedValue> compared_values(const Node& a, const Node& b);
 
 /// Prints the values that differ between the summaries of two results folders, as a table or JSON. If `out`
-/// is given, also writes a page with plots of both runs. Returns exit_done. Throws InputError if results are
-/// missing or damaged, and std::runtime_error if the page exists or cannot be written.
+/// is given, also writes a page with plots of both runs. Returns exit_done. Throws InputError if a summary or
+/// log is missing or damaged, and std::runtime_error if the page exists or cannot be written.
 int compare_command(const CompareArguments& arguments, std::ostream& out, std::ostream& err);
 
 }  // namespace flexura

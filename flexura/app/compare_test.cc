@@ -60,7 +60,7 @@ class Compare : public ::testing::Test {
 TEST_F(Compare, ListsTheValuesThatDiffer) {
   arguments_.a = run("a", 0.5), arguments_.b = run("b", 0.6);
   const std::string table = answer();
-  EXPECT_THAT(table, HasSubstr("A: " + arguments_.a + ": move: at its shape after 0.2 s\n"));
+  EXPECT_THAT(table, HasSubstr("A: " + arguments_.a + ": move: at the target shape after 0.2 s\n"));
   EXPECT_THAT(table, HasSubstr("\ntip.position.0"));
   EXPECT_THAT(table, HasSubstr("\ntasks.move.tip.position.0"));
   EXPECT_THAT(table, Not(HasSubstr("\nduration")));

@@ -67,14 +67,14 @@ void add_notes(std::span<const PictureFile> pictures, std::span<const Observatio
                const EstimateConfig& config, ShapeEstimate& found) {
   if (found.is_found && !config.prior.is_base_position_known)
     found.notes.emplace_back(
-        "the base is assumed to be the end at the border of the first picture, or the lower end: give it "
-        "with --base");
+        "assumed that the arm's base is the end at the border of the first picture, or the lower end: give "
+        "the base with --base");
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const auto same = std::ranges::find_if(
         pictures.first(i), [&](const PictureFile& other) { return other.bytes == pictures[i].bytes; });
     if (same != pictures.first(i).end())
       found.notes.push_back(
-          fmt::format("pictures {} and {} are the same", same - pictures.begin() + 1, i + 1));
+          fmt::format("pictures {} and {} are identical", same - pictures.begin() + 1, i + 1));
   }
   if (auto hint = hint_of(config.prior, observations, found)) found.notes.push_back(std::move(*hint));
   const auto& sections = config.prior.arm.sections;
@@ -98,9 +98,9 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
     PictureObservation observed = observe(pictures[i], cameras[i], config);
     if (observed.is_of_other_size)
       sizes.push_back(fmt::format(
-          "picture {} may be of another size than its camera is described for: see its own notes", i + 1));
+          "picture {} may not have the size of its camera in the file: see the picture's notes", i + 1));
     else if (!observed.report.notes.empty())
-      notes.push_back(fmt::format("picture {} has notes of its own", i + 1));
+      notes.push_back(fmt::format("see the notes of picture {}", i + 1));
     report.push_back(std::move(observed.report)), observations.push_back(std::move(observed.observation));
   }
   if (progress != nullptr) progress->update(1 - 1 / all, "estimating the shape");

@@ -20,7 +20,7 @@ struct PictureReport {
 };
 
 /// Returns the answer that `flexura estimate` prints (docs/estimation.md, "flexura estimate"). `found` is the
-/// estimate from `observations`, one for each of `pictures`.
+/// estimate from `observations`, which has one observation per picture.
 [[nodiscard]] Node estimate_node(const ShapeEstimate& found, std::span<const Observation> observations,
                                  std::span<const PictureReport> pictures, const EstimateConfig& config);
 

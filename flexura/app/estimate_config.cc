@@ -53,9 +53,10 @@ void check_poses(const Node& file, const std::vector<MeasuredCamera>& cameras) {
       problems.push_back(
           {position->where, fmt::format("camera[{}].position: expected within {:g} m", i, farthest_place)});
     else if (i + 1 == tables.size() && i > 0 && stand_at_one_place(cameras))
-      problems.push_back({position->where, fmt::format("camera[{}].position: is that of camera[0]: "
-                                                       "expected the position and rotation of each",
-                                                       i)});
+      problems.push_back(
+          {position->where,
+           fmt::format(
+               "camera[{}].position: equals that of camera[0]: expected cameras at different positions", i)});
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }
@@ -99,13 +100,13 @@ double marker_place(const std::string& word, const ShapePrior& prior, bool is_de
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
-    throw input_error("--markers",
-                      fmt::format("\"{}\": expected arc lengths, m, or shares as \"25%\"", word));
-  if (!is_share && !is_described && !prior.is_length_known)
     throw input_error(
         "--markers",
-        fmt::format("{} m of an arm of unknown length: expected --length, --arm, or shares as \"25%\"",
-                    word));
+        fmt::format("\"{}\": expected arc lengths in m, or shares of the length such as \"25%\"", word));
+  if (!is_share && !is_described && !prior.is_length_known)
+    throw input_error("--markers", fmt::format("{} m, but the arm's length is unknown: expected --length, "
+                                               "--arm, or shares of the length such as \"25%\"",
+                                               word));
   constexpr double percent = 0.01;
   const double s = is_share ? percent * value * prior.arm.length() : value;
   const bool is_on_arm = s >= 0 && s <= prior.arm.length();
@@ -142,9 +143,10 @@ EstimateConfig estimate_config(const EstimateArguments& arguments) {
   const double alike = 1e-9 * config.prior.arm.length();
   const auto is_alike = [&](double one, double next) { return next - one <= alike; };
   if (const auto twice = std::ranges::adjacent_find(markers, is_alike); twice != markers.end())
-    throw input_error("--markers",
-                      fmt::format("a position occurs twice, {:.9g} of the arm's length: expected each once",
-                                  *twice / config.prior.arm.length()));
+    throw input_error(
+        "--markers",
+        fmt::format("the position {:.9g} of the arm's length occurs twice: expected each position once",
+                    *twice / config.prior.arm.length()));
   config.threshold = threshold_config(arguments.threshold);
   config.points = static_cast<std::size_t>(arguments.points);
   config.has_bends = is_described;
@@ -155,9 +157,9 @@ std::vector<MeasuredCamera> standing_cameras(const Node& file, std::size_t count
   auto cameras = read_as<MeasuredCameras>(file).camera;
   check_poses(file, cameras);
   if (cameras.size() != count)
-    throw InputError(
-        {{file.find("camera")->where,
-          fmt::format("camera: {} for {} pictures: expected one for each", cameras.size(), count)}});
+    throw InputError({{file.find("camera")->where,
+                       fmt::format("camera: {} cameras for {} pictures: expected one camera per picture",
+                                   cameras.size(), count)}});
   return cameras;
 }
 

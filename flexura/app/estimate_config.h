@@ -21,7 +21,8 @@ struct EstimateConfig {
   ThresholdConfig threshold;
   EstimatorConfig estimator;
   std::size_t points = 101;  ///< Number of backbone points in the answer; at least 2.
-  bool has_bends = false;    ///< Whether the answer has the bends of a described arm's sections.
+  /// Whether the answer includes the bends of the sections; the arm's file must then describe the sections.
+  bool has_bends = false;
 };
 
 /// Arguments of `flexura estimate`.
@@ -37,15 +38,16 @@ struct EstimateArguments {
   std::int64_t points = 101;  ///< Number of backbone points to print.
 };
 
-/// Throws InputError for arguments that are wrong independent of the files' contents.
+/// Checks the arguments without reading the files. Throws InputError for wrong arguments.
 void check_arguments(const EstimateArguments& arguments);
 
-/// Returns the settings for the arguments. Throws InputError with the wrong argument, or with the position in
-/// the arm's file.
+/// Returns the settings for the arguments. Throws InputError that names the wrong argument or the position of
+/// the error in the arm's file.
 [[nodiscard]] EstimateConfig estimate_config(const EstimateArguments& arguments);
 
-/// Returns the cameras of a file, checked for use in triangulation. Throws InputError for a camera without
-/// position or rotation, if all cameras are at one position, or if the file does not have `count` cameras.
+/// Returns the cameras of a file, which can triangulate points. Throws InputError for a camera without
+/// position or rotation, for cameras that are all at one position, and for a file without exactly `count`
+/// cameras.
 [[nodiscard]] std::vector<MeasuredCamera> standing_cameras(const Node& file, std::size_t count);
 
 }  // namespace flexura

@@ -101,7 +101,8 @@ TEST_F(EstimateHints, RefusesPicturesOfAnotherSizeThanTheCamerasAreSaidToBeOf) {
   } catch (const InputError& error) {
     EXPECT_THAT(
         error.what(),
-        HasSubstr("640 x 480 px: expected 1280 x 960, for which camera \"front\" is described (size)"));
+        HasSubstr(
+            "640 x 480 px: expected 1280 x 960 px, the size of camera \"front\" in the file of cameras"));
   }
   EXPECT_THROW(estimate_command(with_size("[0, 480]"), out), InputError);
   EXPECT_THROW(estimate_command(with_size("[640]"), out), InputError);
@@ -135,7 +136,7 @@ TEST_F(EstimateHints, TellWhereTheBaseIsLookedFor) {
   const Node turned = answer(exit_missed);
   const auto& notes = *turned.find("notes")->as<Node::Array>();
   EXPECT_TRUE(std::ranges::any_of(notes, [](const Node& note) {
-    return note.as<std::string>()->starts_with("the base would be seen at (");
+    return note.as<std::string>()->starts_with("the base would be visible at (");
   }));
 }
 

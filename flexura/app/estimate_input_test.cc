@@ -45,8 +45,8 @@ class EstimateInput : public testing::Test {
 TEST_F(EstimateInput, SaysWhereAFileOfCamerasIsWrong) {
   const std::string side = "position = [-1.9, 0.45, 0.0]";
   EXPECT_EQ(refusal(side, "position = [0, 0.45, 1.9]"),
-            "cameras.toml:13:12: camera[1].position: is that of camera[0]: expected the position and "
-            "rotation of each");
+            "cameras.toml:13:12: camera[1].position: equals that of camera[0]: expected cameras at "
+            "different positions");
   EXPECT_EQ(refusal(side, "position_mm = [1e200, 0, 0]"),
             "cameras.toml:13:15: camera[1].position: expected within 1e+06 m");
   EXPECT_EQ(refusal(side, ""),
@@ -56,7 +56,8 @@ TEST_F(EstimateInput, SaysWhereAFileOfCamerasIsWrong) {
   EXPECT_EQ(refusal("cx = 319.5", "cx = 1e308"),
             "cameras.toml:4:6: camera[0].cx = 1e+308: expected a number from -10000000 to 10000000");
   arguments_.images.emplace_back("third.png");
-  EXPECT_EQ(refusal("", ""), "cameras.toml:1:1: camera: 2 for 3 pictures: expected one for each");
+  EXPECT_EQ(refusal("", ""),
+            "cameras.toml:1:1: camera: 2 cameras for 3 pictures: expected one camera per picture");
 }
 
 TEST_F(EstimateInput, RefusesWhatItCannotUse) {

@@ -315,7 +315,7 @@ TEST_F(Estimate, SaysThatCamerasAreForPicturesOfAnotherSize) {
   }
   const std::string found = write_json(answer(exit_missed));
   EXPECT_THAT(found, ::testing::HasSubstr("for pictures of another size, 2 times as large?"));
-  EXPECT_THAT(found, ::testing::HasSubstr("picture 2 may be of another size"));
+  EXPECT_THAT(found, ::testing::HasSubstr("picture 2 may not have the size of its camera"));
 }
 
 TEST_F(Estimate, SaysThatAPictureIsGivenTwice) {
@@ -329,7 +329,7 @@ TEST_F(Estimate, SaysThatTheBaseIsGuessed) {
   const auto says = [&] {
     const Node found = answer(exit_done);
     const Node* notes = found.find("notes");
-    return notes != nullptr && write_json(*notes).find("give it with --base") != std::string::npos;
+    return notes != nullptr && write_json(*notes).find("give the base with --base") != std::string::npos;
   };
   EXPECT_TRUE(says());
   arguments_.base = {0, 0, 0};

@@ -8,23 +8,23 @@
 
 namespace flexura {
 
-/// The colours of an arm's sections, used in turn, and of obstacles, as in a report (report/figure.css): red,
-/// green, blue from 0 to 1.
+/// Colours of sections (section i has colour i modulo 8) and of obstacles, as in reports (report/figure.css).
+/// Each colour is red, green, blue from 0 to 1.
 extern const std::array<std::array<double, 3>, 8> section_colors;
 extern const std::array<double, 3> report_obstacle_color;
 
 /// Result of an export as glTF.
 struct GltfExport {
   std::filesystem::path file;  ///< The new file.
-  bool truncated = false;      ///< The run was cut short: its log ends without a summary.
+  bool truncated = false;      ///< Whether the run was interrupted: its log ends without a summary.
 };
 
 /// Writes the motion of a run's arm as a binary glTF 2.0 file. The arm is an animated tube with a skin on
-/// joints along the backbone. The file also has the cameras and obstacles. The arm is the true one where the
-/// log has it, otherwise the commanded one. There are 30 poses a second, or 3000 in all of a longer run.
-/// `file`: the new file; empty: arm.glb in the new folder RESULTS/gltf (gltf-2, ... if it exists). `progress`
-/// may be null. Throws InputError if `results` is not a run's folder or its log is damaged,
-/// std::runtime_error if the file exists or cannot be written.
+/// joints along the backbone. The file also has the cameras and obstacles. The file shows the true arm if the
+/// log contains it, otherwise the commanded arm. It has 30 poses per second, but at most 3000 poses. `file`:
+/// the new file; empty: arm.glb in the new folder RESULTS/gltf (gltf-2, ... if it exists). `progress` may be
+/// null. Throws InputError if `results` is not a run's folder or its log is damaged, std::runtime_error if
+/// the file exists or cannot be written.
 GltfExport export_gltf(const std::filesystem::path& results, const std::filesystem::path& file,
                        Progress* progress = nullptr);
 

@@ -32,7 +32,8 @@ struct ForwardRequest {
 
 const Table<ForwardRequest>& fields_of(const ForwardRequest*) {
   static const auto table =
-      Table<ForwardRequest>("fk request", "Shape of the arm, and the positions along it for the answer.")
+      Table<ForwardRequest>("fk request",
+                            "Shape of the arm, and positions along the arm whose poses the answer gives.")
           .field("cord_angles", &ForwardRequest::cord_angles,
                  {.meaning = "cords' angles from +X", .unit = Unit::radian, .range = angle_range})
           .field("archings", &ForwardRequest::archings,
@@ -71,7 +72,7 @@ ForwardRequest read_forward_request(const ArmModel& model, std::string_view line
     const ShapeConfig shape = request.shape();
     check_shape(shape, arm.kind, arm.sections.size(), "", reader);
     if (!shape.cord_angles && !shape.archings && !shape.bends && !shape.stretches) {
-      reader.problem("has no shape: expected cord_angles, archings, bends or stretches");
+      reader.problem("the request has no shape: expected cord_angles, archings, bends or stretches");
     }
     if (reader.problems().empty()) check_bends(arm, shape, "", reader);
   }

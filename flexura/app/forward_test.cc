@@ -115,7 +115,7 @@ TEST(AnswerForward, AnswersABadLineWithItsError) {
       {R"({"bends":[[0,0],[0,"x"]]})", "bends[1][1] = \\\"x\\\": expected a number"},
       {R"({"bends":[[0,0],[0,null]]})", "bends[1][1] = nothing: expected a number"},
       {R"({"bends":[[0,0],[0,1e300]]})", "bends[1][1] = 1e+300: expected a number from"},
-      {R"({"bends":[[0,0],[0,0]],"bends":[]})", "given twice"},
+      {R"({"bends":[[0,0],[0,0]],"bends":[]})", "occurs twice"},
       {R"({"archings":[0,0]})", "is for planar arms"},
       {R"({"bends":[[0,0],[0,0]],"at":[3.1]})", "at[0]: 3.1 is beyond the tip: expected at most 3 m"},
       {R"({"bends":[[0,0],[0,0]],"at":[-1]})", "at[0] = -1: expected a number at least 0 m"},

@@ -9,26 +9,27 @@
 
 namespace flexura {
 
-/// A ring of a tube in its rest shape: a circle about a joint's z.
+/// Cross-section of an undeformed tube: a circle about the z axis of a joint.
 struct TubeRing {
   Pose pose;          ///< Rest pose of the joint in the world.
   double radius = 0;  ///< m
   std::uint16_t joint = 0;
 };
 
-/// Returns the surface through these rings, two or more, that move with their joints. Ends are open.
+/// Returns the surface through at least two rings, which move with their joints. The tube's ends are open.
 [[nodiscard]] GltfMesh tube_mesh(std::span<const TubeRing> rings);
-/// Adds a lid to a tube's mesh at one of its rings, flat or half a ball. Its outward direction is the ring's
-/// z times `side`, which is 1 or -1.
+/// Closes a tube's mesh at one of its rings with a flat or hemispherical cap. The cap's outward direction is
+/// the ring's z axis times `side`, which is 1 or -1.
 void add_lid(const TubeRing& ring, TipKind kind, double side, GltfMesh& mesh);
 
-/// Returns a ball about the origin, m.
+/// Returns a sphere with the radius `radius`, m, centred at the origin.
 [[nodiscard]] GltfMesh ball_mesh(double radius);
-/// Returns a box about the origin with these half edges, m.
+/// Returns a box centred at the origin with these half edge lengths, m.
 [[nodiscard]] GltfMesh box_mesh(const Eigen::Vector3d& half_sizes);
-/// Returns the surface at `radius` m from a segment along z, about the origin, of this length, m.
+/// Returns a capsule centred at the origin. Its axis is a segment along z of the given length; radius and
+/// length in m.
 [[nodiscard]] GltfMesh capsule_mesh(double radius, double length);
-/// Returns a square about the origin, across z, of this half edge, m.
+/// Returns a square in the xy plane centred at the origin. `half` is half its edge length, m.
 [[nodiscard]] GltfMesh square_mesh(double half);
 
 }  // namespace flexura

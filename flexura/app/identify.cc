@@ -174,11 +174,11 @@ void print_table(const IdentifiedArm& found, std::ostream& out) {
     out << fmt::format("{:>12.5g}{}\n", value.nominal, value.is_physical ? "" : "  not physical");
   }
   out << fmt::format(
-      "{} positions at {} times, which the rod's shapes approximate within {} (rms); misfit {:.2f}\n",
+      "{} positions at {} times; the rod's strain modes fit them within {} (rms); misfit {:.2f}\n",
       found.places, found.samples, distance_words(found.rms), found.misfit);
   out << fmt::format(
-      "simulated with its tendons' forces, the arm of the file is {} (rms) from the motion, the identified "
-      "arm {}\n",
+      "distance from the measured motion, simulated with the measured tensions: the file's arm {} (rms), the "
+      "identified arm {}\n",
       distance_words(found.missed_file), distance_words(found.missed));
 }
 
@@ -187,13 +187,12 @@ std::string unphysical_note(const IdentifiedValue& value, const IdentifiedArm& f
   const bool can_be_zero = value.name == "damping_time" || value.name == "friction";
   const std::string of = value.section ? fmt::format("section {}: ", *value.section) : "";
   // Within two standard deviations of the range the value says only that it is small.
-  const std::string why =
-      value.value + 2 * value.sigma > 0
-          ? "the motion hardly excites it, or it is too small to be seen"
-          : fmt::format(
-                "the samples are too far apart in time (every {:.3g} ms), or the file's arm differs "
-                "from the true one in more than these values",
-                1e3 * found.step);
+  const std::string why = value.value + 2 * value.sigma > 0
+                              ? "the motion hardly excites it, or the value is too small to be observed"
+                              : fmt::format(
+                                    "the sampling interval ({:.3g} ms) is too long, or the file's arm "
+                                    "differs from the true arm in other values too",
+                                    1e3 * found.step);
   return fmt::format("note: {}{} = {:.4g} +- {:.2g} is outside its physical range ({}): {}\n", of,
                      words_of(value.name), value.value, value.sigma, can_be_zero ? "0 or more" : "above 0",
                      why);
@@ -207,18 +206,17 @@ void print_notes(const IdentifiedArm& found, double noise, std::ostream& err) {
     err << fmt::format(
         "note: the identified arm does not explain the motion (misfit {:.3g}, expected about 1), so values "
         "and standard deviations may be wrong: check the section lengths, masses, tendons and loads of the "
-        "file, and whether the samples (every {:.3g} ms) are close enough in time\n",
+        "file, and the sampling interval ({:.3g} ms)\n",
         found.misfit, 1e3 * found.step);
   if (is_off)
     err << fmt::format(
-        "note: no shape of the file's arm meets the positions: they are off by {:.3g} mm (rms), with noise "
-        "of {:.3g} mm: check the section lengths of the file, and where the positions are along the arm\n",
+        "note: no shape of the file's arm fits the positions: the residual is {:.3g} mm (rms), the noise "
+        "{:.3g} mm: check the file's section lengths and the positions' arc lengths\n",
         1e3 * found.rms, 1e3 * noise);
   for (const IdentifiedValue& value : found.values)
     if (value.is_determined && !value.is_physical) err << unphysical_note(value, found);
   if (!found.converged)
-    err << "note: the friction did not settle in the allowed number of iterations; all values are of the "
-           "last one\n";
+    err << "note: the estimate of the friction did not converge; all values are from the last iteration\n";
 }
 
 void refuse_what_is_not_known(const IdentifyArguments& arguments, const ArmConfig& arm) {

@@ -18,13 +18,13 @@ struct IdentifyArguments {
   std::string motion = {};  ///< Results folder, log, or table of measured positions.
   std::vector<std::string> sets = {};
   std::optional<double> from = {}, to = {};  ///< Part of the motion to use, s.
-  std::optional<double> noise_mm = {};    ///< Standard deviation of measured positions, mm; for a log, of the
-                                          ///< noise that is added to its positions.
+  /// Standard deviation of measured positions, mm. A log's exact positions get noise of this size.
+  std::optional<double> noise_mm = {};
   std::optional<double> window = {};      ///< Duration of motion in one equation, s.
   std::optional<std::int64_t> seed = {};  ///< Seed of the noise added to a log's positions.
   bool mass = false;                      ///< Whether to identify a mass factor too.
   bool friction = false;  ///< Whether to identify the friction coefficient of the tendons too.
-  bool alike = false;     ///< Whether all sections have one material.
+  bool alike = false;     ///< Whether all sections have the same material.
   bool json = false;
 };
 
@@ -34,8 +34,9 @@ struct IdentifiedValue {
   std::string unit;  ///< "Pa", "s" or "".
   std::optional<std::size_t> section = {};  ///< Number of the section, from 1; empty: the whole arm.
   bool is_determined = false;               ///< Whether the motion determines `value` and `sigma`.
-  /// False for a determined value that no material has: a negative damping time or friction, or no stiffness
-  /// or mass above 0. The value is not constrained, so that its standard deviation remains valid.
+  /// False if a determined value is impossible for a material: a negative damping time or friction, or a
+  /// stiffness or mass that is not above 0. The estimate is not constrained to possible values, so that its
+  /// standard deviation is valid.
   bool is_physical = true;
   double value = 0;
   double sigma = 0;    ///< Standard deviation of the value.
@@ -47,13 +48,15 @@ struct IdentifiedArm {
   std::vector<IdentifiedValue> values;
   std::size_t samples = 0, places = 0;
   int equations = 0;
-  double misfit = 0;  ///< Identification::misfit. If above 1, all sigmas are scaled by its square root.
-  double noise = 0;   ///< Standard deviation of the coordinates of measured positions, m.
-  double rms = 0;     ///< Rms residual of the coordinates after fitting the strain modes, m.
+  /// Identification::misfit. All sigmas are multiplied by the square root of a misfit above 1.
+  double misfit = 0;
+  double noise = 0;  ///< Standard deviation of the coordinates of measured positions, m.
+  double rms = 0;    ///< Rms residual of the coordinates after fitting the strain modes, m.
   /// Rms distance of the arm in the file from the measured positions (places_missed), m. Infinite if the
   /// motion cannot be computed.
   double missed_file = 0;
-  /// Rms distance of the identified arm from the measured positions, m. Unphysical values are as in the file.
+  /// Rms distance of the identified arm from the measured positions, m. Values that are not physical are
+  /// replaced by those of the file.
   double missed = 0;
   double step = 0;        ///< Mean time between two samples, s.
   bool converged = true;  ///< Identification::converged.

@@ -51,10 +51,9 @@ Logged read_messages(const McapReader& log, const std::string& name, const TimeS
     } else if (topic == arm_contacts_topic) {
       const auto touching = read_as<ContactsMessage>(parse_json(message.text(), name));
       if (!touching.contacts.empty())
-        throw input_error(name,
-                          fmt::format("the arm touches {} at {} s, and what pushes it there is not known: "
-                                      "expected a time without contact (--from, --to)",
-                                      touching.contacts[0].with, time));
+        throw input_error(name, fmt::format("the arm touches {} at {} s, and the contact force is unknown: "
+                                            "expected a part of the motion without contact (--from, --to)",
+                                            touching.contacts[0].with, time));
     }
   }
   return logged;
@@ -72,11 +71,11 @@ MeasuredMotion motion_of(const Logged& logged, const std::string& name, const Ex
   for (std::size_t k = 0; k < logged.truth.size(); ++k) {
     const auto& [time, truth] = logged.truth[k];
     if (truth.poses.size() != poses)
-      throw input_error(name,
-                        fmt::format("has a true arm of {} arcs at {} s: expected {}, as of an elastic arm of "
-                                    "{} sections",
-                                    truth.poses.size() - std::min<std::size_t>(1, truth.poses.size()), time,
-                                    poses - 1, rod.sections.size()));
+      throw input_error(
+          name,
+          fmt::format("has a true arm of {} arcs at {} s: expected {} arcs for an elastic arm of {} sections",
+                      truth.poses.size() - std::min<std::size_t>(1, truth.poses.size()), time, poses - 1,
+                      rod.sections.size()));
     const auto pulls = logged.tensions.find(logged.times[k]);
     // A log that was cut short may lack the tensions of its last state.
     if (pulls == logged.tensions.end() && is_cut && k + 1 == logged.truth.size()) break;
@@ -127,8 +126,8 @@ MeasuredMotion motion_in_table(const std::string& name, const Experiment& experi
   const std::size_t tendons = rod.tendons.size(), columns = table.columns.size();
   if (columns < 4 + tendons || (columns - 1 - tendons) % 3 != 0 || table.columns[0] != "time")
     throw refuse(
-        fmt::format("{} columns: expected time, tension_1 to tension_{}, and x@S, y@S, z@S of each place, "
-                    "S its arc length in m",
+        fmt::format("{} columns: expected time, tension_1 to tension_{}, and x@S, y@S, z@S of each position, "
+                    "where S is its arc length in m",
                     columns, tendons));
   for (std::size_t i = 0; i < tendons; ++i)
     if (const std::string desired = fmt::format("tension_{}", i + 1); table.columns[1 + i] != desired)
@@ -138,7 +137,8 @@ MeasuredMotion motion_in_table(const std::string& name, const Experiment& experi
     const auto s = place_in(table.columns[c], 'x');
     if (!s || place_in(table.columns[c + 1], 'y') != s || place_in(table.columns[c + 2], 'z') != s)
       throw refuse(fmt::format(
-          "columns {} to {} are no place: expected x@S, y@S and z@S, S an arc length in m", c + 1, c + 3));
+          "columns {} to {} are not a position: expected x@S, y@S and z@S, where S is an arc length in m",
+          c + 1, c + 3));
     if (!(*s > 0) || !(*s <= rod.length() * (1 + 1e-9)))
       throw refuse(fmt::format("\"{}\" is not on the arm: expected an arc length above 0 and at most {} m",
                                table.columns[c], rod.length()));
@@ -150,7 +150,7 @@ MeasuredMotion motion_in_table(const std::string& name, const Experiment& experi
     if (!span.has(row[0])) continue;
     if (!motion.samples.empty() && !(row[0] > motion.samples.back().time))
       throw input_error(name,
-                        fmt::format("time {}: expected one after {}", row[0], motion.samples.back().time),
+                        fmt::format("time {}: expected a time after {}", row[0], motion.samples.back().time),
                         table.lines[r], 1);
     RodPlaceSample sample{.time = row[0], .positions = {}};
     for (std::size_t i = 0; i < tendons; ++i) {
@@ -175,7 +175,7 @@ MeasuredMotion read_motion(const std::filesystem::path& file, const Experiment& 
   if (!is_folder && is_missing(file))
     throw input_error(
         file.string(),
-        "no such file: expected a folder made by `flexura run`, a log (.mcap), or places (.csv)");
+        "no such file: expected a folder made by `flexura run`, a log (.mcap), or measured points (.csv)");
   const McapReader log = is_folder ? open_log(file) : from_log([&] { return McapReader(file); });
   const std::string name = is_folder ? (file / log_file_name).string() : file.string();
   return from_log([&] {

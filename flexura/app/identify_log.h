@@ -15,7 +15,7 @@ namespace flexura {
 struct TimeSpan {
   std::optional<double> from = {}, to = {};
 
-  /// Returns whether the time is in the part.
+  /// Returns whether the time is within the span.
   [[nodiscard]] bool has(double time) const { return (!from || time >= *from) && (!to || time <= *to); }
 };
 
@@ -28,9 +28,9 @@ struct MeasuredMotion {
 };
 
 /// Reads the motion of the arm of `experiment`, whose rod is `rod`, from `file`. `file` is a results folder,
-/// a log of a run, or a table FILE.csv of measured positions (docs/command-line.md, "identify"). A log has
-/// positions and tensions of the true arm. Throws InputError if the file is missing or damaged, has no motion
-/// of this arm, or if the arm touches something.
+/// a log of a run, or a table FILE.csv of measured positions (docs/command-line.md, "identify"). From a log,
+/// it reads positions and tensions of the true arm. Throws InputError if the file is missing or damaged, does
+/// not contain a motion of this arm, or if the arm touches something.
 [[nodiscard]] MeasuredMotion read_motion(const std::filesystem::path& file, const Experiment& experiment,
                                          const Rod& rod, const TimeSpan& span);
 

@@ -214,7 +214,7 @@ TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
     EXPECT_THAT(refused({.experiment = step_response, .motion = motion}), HasSubstr(what));
   };
   refuses("nowhere",
-          "nowhere: no such file: expected a folder made by `flexura run`, a log (.mcap), or places");
+          "nowhere: no such file: expected a folder made by `flexura run`, a log (.mcap), or measured");
   refuses(folder_.path().string(), "holds no log.mcap");
   refuses(written("text.mcap", "no log at all, but text that is long enough"), "text.mcap");
   const std::string log = read_text_file(results() + "/log.mcap", 1 << 28);
@@ -257,12 +257,12 @@ TEST_F(Identify, RefusesATableThatIsNone) {
   refuses("t" + tensions.substr(4) + ",x@0.1,y@0.1,z@0.1\n", "10 columns: expected time");
   refuses("time,a" + tensions.substr(14) + ",x@0.1,y@0.1,z@0.1\n",
           "column 2 is \"a\": expected \"tension_1\"");
-  refuses(tensions + ",x@0.1,y@0.1,z@0.2\n", "columns 8 to 10 are no place");
+  refuses(tensions + ",x@0.1,y@0.1,z@0.2\n", "columns 8 to 10 are not a position");
   refuses(tensions + ",x@0.9,y@0.9,z@0.9\n", "\"x@0.9\" is not on the arm");
   refuses(tensions + ",x@0.1,y@0.1,z@0.1\n0,1,1,1,1,1,1,nan,0,0\n", "places.csv:2:15:");
   refuses(tensions + ",x@0.1,y@0.1,z@0.1\n0,1,1,-1,1,1,1,0,0,0\n", "places.csv:2:1: tension_3 = -1");
   refuses(tensions + ",x@0.1,y@0.1,z@0.1\n0,1,1,1,1,1,1,0,0,0\n0,1,1,1,1,1,1,0,0,0\n",
-          "places.csv:3:1: time 0: expected one after 0");
+          "places.csv:3:1: time 0: expected a time after 0");
   refuses(tensions + ",x@0.1,y@0.1,z@0.1\n0,1,1,1,1,1,1,0,0,0\n1,1,1,1,1,1,1,0,0,0\n",
           "1 places do not determine 16 strain modes");
 }

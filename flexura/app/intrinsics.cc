@@ -50,8 +50,9 @@ void check(const IntrinsicsArguments& arguments) {
   if (arguments.left.size() != arguments.right.size())
     throw input_error(
         "--right",
-        fmt::format("{} picture{} for {} of --left: expected one for each, taken together",
-                    arguments.right.size(), arguments.right.size() == 1 ? "" : "s", arguments.left.size()));
+        fmt::format(
+            "{} picture{} for {} of --left: expected one per picture of --left, taken at the same time",
+            arguments.right.size(), arguments.right.size() == 1 ? "" : "s", arguments.left.size()));
   if (arguments.distortion < 0 || arguments.distortion > 5)
     throw input_error("--distortion",
                       fmt::format("{}: expected 0 to 5 of k1, k2, p1, p2, k3", arguments.distortion));
@@ -71,7 +72,7 @@ void check(const IntrinsicsArguments& arguments) {
   if (!arguments.rig_from.empty() && arguments.rig.empty())
     throw input_error("--rig-from", "needs --rig, the file to write");
   if (!arguments.zooms.empty() && !arguments.out.empty())
-    throw input_error("--out", "it cannot store a lens at several zooms: expected --rig FILE");
+    throw input_error("--out", "the file cannot store a lens at several zooms: expected --rig FILE");
   check_folder("--out", arguments.out), check_folder("--rig", arguments.rig);
 }
 
@@ -83,8 +84,8 @@ Node cameras_answer(const IntrinsicsArguments& arguments, const BoardTarget& boa
   if (is_pair && board.is_ambiguous())
     throw input_error("--board",
                       fmt::format("{}x{}: looks the same upside down, so two cameras may count the corners "
-                                  "from different ends: expected one even and one odd number of a "
-                                  "chessboard, or an odd number of rows of asymmetric circles",
+                                  "from different ends: expected a chessboard with one even and one odd "
+                                  "number, or asymmetric circles with an odd number of rows",
                                   board.columns, board.rows));
   const std::vector<std::string>& first = is_pair ? arguments.left : arguments.images;
   // The fit takes about as long as the search in half of the pictures.

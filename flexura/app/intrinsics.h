@@ -11,7 +11,7 @@ namespace flexura {
 /// Arguments of `flexura intrinsics`.
 struct IntrinsicsArguments {
   std::vector<std::string>
-      images;  ///< Pictures of one camera. Only one of `images`, `left` and `right`, and `zooms` is given.
+      images;  ///< Pictures of one camera. Either `images`, or `left` and `right`, or `zooms` are given.
   std::vector<std::string> left, right;  ///< Pictures of two cameras, taken at the same times.
   /// Folders of pictures of one camera at several zooms: RATIO[@COUNT]=FOLDER or @COUNT=FOLDER.
   std::vector<std::string> zooms;
@@ -20,10 +20,10 @@ struct IntrinsicsArguments {
   std::string pattern = "chessboard";
   std::int64_t distortion = 5;  ///< Number of distortion coefficients to fit, of k1, k2, p1, p2, k3.
   std::optional<std::int64_t>
-      hold_out;                    ///< N: every Nth view is excluded from the fit, to verify it; empty: none.
+      hold_out;  ///< N: every Nth view is excluded from the fit and tests it; empty: no view is excluded.
   std::vector<std::string> names;  ///< Camera names.
   std::vector<double> position;    ///< p_WC of the first camera, m: three numbers; empty: the origin.
-  std::vector<double> rotation;    ///< R_WC of the first camera as (w, x, y, z); empty: the world's axes.
+  std::vector<double> rotation;    ///< Quaternion (w, x, y, z) of R_WC of the first camera; empty: identity.
   std::string out;                 ///< File of measured cameras to write; "": no file.
   std::string rig;                 ///< Rig file to write, which experiments can include; "": no file.
   std::string rig_from;  ///< Experiment whose cameras are copied into the rig file; "": no experiment.

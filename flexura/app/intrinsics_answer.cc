@@ -85,8 +85,9 @@ void add_warnings(const BoardPictures& pictures, const CameraFit& fit, std::vect
   constexpr double suspicious = 3;
   for (std::size_t i = 0; i < fit.view_rms.size(); ++i) {
     if (!fit.view_rms[i] || *fit.view_rms[i] <= suspicious * usual) continue;
-    notes.push_back(fmt::format("{} fits {:.1f} times worse than the median picture: check this picture",
-                                pictures.names[i], *fit.view_rms[i] / usual));
+    notes.push_back(
+        fmt::format("the residual of {} is {:.1f} times that of the median picture: check this picture",
+                    pictures.names[i], *fit.view_rms[i] / usual));
   }
 }
 
@@ -141,15 +142,14 @@ std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras, con
     const double alone = fit.cameras[i].rms_alone, together = fit.cameras[i].rms;
     if (fit.cameras.size() > 1 && together > std::max(visible, much_worse * alone))
       notes.push_back(
-          fmt::format("camera {} fits to {:.2g} px alone and to {:.2g} px with the other: pictures that were "
-                      "not taken together, or a camera that moved",
+          fmt::format("the residual of camera {} is {:.2g} px alone and {:.2g} px together with the other "
+                      "camera: pictures were not taken at the same time, or a camera moved",
                       i + 1, alone, together));
     const auto& undetermined = fit.cameras[i].undetermined;
     if (!undetermined.empty() && undetermined.front() >= 4)
       notes.push_back(
           fmt::format("{} of the lens is not observable in these views: use fewer coefficients with "
-                      "--distortion, or boards "
-                      "that reach the image's corners",
+                      "--distortion, or views in which the board reaches the image's corners",
                       parameter_names[static_cast<std::size_t>(undetermined.front())]));
   }
   return notes;

@@ -15,7 +15,8 @@ namespace flexura {
 
 [[nodiscard]] Node board_node(const BoardTarget& board);
 
-/// Returns one camera's parameters with standard deviations and covariance, and its pictures.
+/// Returns one camera's parameters with their standard deviations and covariance, and the results for each of
+/// its pictures.
 [[nodiscard]] Node camera_node(const std::string& name, const BoardPictures& pictures,
                                const IntrinsicsFit& fit, std::size_t camera, int distortion);
 

@@ -33,7 +33,7 @@ void put_lens(const CalibratedCamera& camera, CameraConfig& config) {
 
 const Table<RigFile>& fields_of(const RigFile*) {
   static const auto table =
-      Table<RigFile>("rig", "Cameras for experiments to include.")
+      Table<RigFile>("rig", "Cameras that experiments can include.")
           .field("camera", &RigFile::camera, {.meaning = "The cameras.", .required = true})
           .check([](const RigFile& rig, Reader& reader) { check_cameras(rig.camera, "camera", reader); });
   return table;
@@ -89,8 +89,11 @@ std::string rig_toml(const std::vector<CalibratedCamera>& cameras, const std::st
     }
     const auto same = std::ranges::find(rig.camera, camera.name, &CameraConfig::name);
     if (same == rig.camera.end())
-      throw input_error(from, fmt::format("has no camera {}: expected one, to put the lens in (--name)",
-                                          Node{camera.name, {}}.brief()));
+      throw input_error(
+          from,
+          fmt::format(
+              "has no camera {}, which should get the lens: expected the name of one of its cameras (--name)",
+              Node{camera.name, {}}.brief()));
     put_lens(camera, *same);
   }
   std::string text =
@@ -136,7 +139,7 @@ std::vector<std::string> names_of_cameras(const IntrinsicsArguments& arguments,
     });
     if (arguments.names[i].empty() || !is_plain ||
         std::ranges::count(arguments.names, arguments.names[i]) > 1)
-      throw input_error("--name", fmt::format("{}: expected different names of letters, digits, - and _",
+      throw input_error("--name", fmt::format("{}: expected different names made of letters, digits, - and _",
                                               Node{arguments.names[i], {}}.brief()));
   }
   return arguments.names;

@@ -29,7 +29,7 @@ struct CalibratedCamera {
   ViewPrior view_prior;
 };
 
-/// The part of a rig that experiments can include: its cameras.
+/// Cameras of a rig, in a file that experiments can include.
 struct RigFile {
   std::vector<CameraConfig> camera;
 };
@@ -39,19 +39,19 @@ const Table<RigFile>& fields_of(const RigFile*);
 [[nodiscard]] LensConfig lens_config(const Intrinsics& lens);
 
 /// Returns the prior standard deviations for a camera of a fit. They are three times the standard deviations
-/// of the fit's covariance, which assumes independent errors of all corners. The focal standard deviation
-/// follows from those of the focal lengths. The rotation standard deviation follows from those of the
-/// principal point and of the orientation relative to the first camera.
+/// of the fit's covariance, which assumes independent errors of all corners. The prior of the focal length
+/// follows from the focal lengths' standard deviations. The prior of the rotation follows from the standard
+/// deviations of the principal point and of the orientation relative to the first camera.
 [[nodiscard]] ViewPrior view_prior_of(const IntrinsicsFit& fit, std::size_t camera);
 
 /// Returns the text of a file of measured cameras (camera/measured_camera.h).
 [[nodiscard]] std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras,
                                                 const std::string& remark);
 
-/// Returns the text of a file of `[[camera]]` tables for experiments to include. Without `from`, the file has
-/// `cameras` at their poses. With the experiment `from`, the file has all cameras of that experiment. Those
-/// with a name in `cameras` get the calibrated lens and image size. Throws InputError if an experiment could
-/// not include the text, or if `from` lacks one of the names.
+/// Returns the text of a file of `[[camera]]` tables that experiments can include. Without `from`, the file
+/// has `cameras` at their poses. With the experiment `from`, the file has all cameras of that experiment.
+/// Cameras whose name is in `cameras` get the calibrated lens and image size. Throws InputError if an
+/// experiment could not include the text, or if `from` lacks one of the names.
 [[nodiscard]] std::string rig_toml(const std::vector<CalibratedCamera>& cameras, const std::string& from,
                                    const std::string& remark);
 
@@ -62,8 +62,8 @@ const Table<RigFile>& fields_of(const RigFile*);
 /// Returns the pose X_WC of the first camera that the arguments give.
 [[nodiscard]] Pose first_pose(const IntrinsicsArguments& arguments);
 
-/// Returns the cameras' names that the arguments give, or `usual`. Throws InputError for names that are not
-/// unique or have characters that an experiment does not allow.
+/// Returns the cameras' names in the arguments, or `usual` if the arguments have none. Throws InputError for
+/// names that are not unique or have characters that an experiment does not allow.
 [[nodiscard]] std::vector<std::string> names_of_cameras(const IntrinsicsArguments& arguments,
                                                         std::vector<std::string> usual);
 
@@ -71,11 +71,11 @@ const Table<RigFile>& fields_of(const RigFile*);
 struct FitRemarks {
   double rms = 0;              ///< Rms residual, px.
   std::size_t points = 0;      ///< Number of points in `rms`.
-  const Node::Array& of_each;  ///< The answer's entries, one per camera or zoom position.
+  const Node::Array& of_each;  ///< Entries of the answer, one per camera or zoom position.
 };
-/// Writes the requested files, all or none, and adds their paths to `answer`. The first line of each file has
-/// `rms` and `points`. Comments below the cameras have the entries of `of_each`, each as one line of JSON,
-/// with residuals and covariances.
+/// Writes the requested files and adds their paths to `answer`. If one cannot be written, none is. The first
+/// line of each file states `rms` and `points`. Comments below the cameras have the entries of `of_each` as
+/// one line of JSON each, with residuals and covariances.
 void write_files(const IntrinsicsArguments& arguments, const std::vector<CalibratedCamera>& cameras,
                  const FitRemarks& fit, Node::Table& answer);
 

@@ -80,8 +80,8 @@ void refuse_larger(const BoardPictures& pictures, const BoardTarget& board) {
   const auto first = std::ranges::find_if(pictures.observations, &BoardObservation::is_larger);
   throw input_error(
       "--board",
-      fmt::format("{}x{}: the board's pattern continues beyond these points in {} of {} pictures ({} is the "
-                  "first): expected the number of all its inner corners (or circles)",
+      fmt::format("{}x{}: the board has more points than this in {} of {} pictures ({} is the first): "
+                  "expected the numbers of all its inner corners (or circles)",
                   board.columns, board.rows, larger, pictures.names.size(),
                   pictures.names[static_cast<std::size_t>(first - pictures.observations.begin())]));
 }
@@ -175,7 +175,7 @@ std::vector<ZoomGroup> zoom_groups(const std::vector<std::string>& zooms) {
         group.count.has_value() != groups.front().count.has_value())
       throw input_error("--zoom", quoted(text) + ": expected a ratio, and a count, in all groups or in none");
   }
-  if (groups.size() < 2) throw input_error("--zoom", "one group of pictures: expected two at least");
+  if (groups.size() < 2) throw input_error("--zoom", "one group of pictures: expected at least two");
   return groups;
 }
 
@@ -194,7 +194,7 @@ std::vector<std::string> pictures_in(const std::string& folder) {
     });
     if (std::ranges::count(kinds, kind) > 0) files.push_back(entry->path().string());
   }
-  if (error) throw input_error(folder, "no folder that can be read");
+  if (error) throw input_error(folder, "the folder cannot be read");
   std::ranges::sort(files);
   return files;
 }

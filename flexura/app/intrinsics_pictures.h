@@ -13,7 +13,7 @@
 
 namespace flexura {
 
-/// One camera's pictures of a board, all of one size.
+/// One camera's pictures of a board. All pictures have the same size.
 struct BoardPictures {
   std::vector<std::string> names;
   std::vector<BoardObservation> observations;
@@ -30,8 +30,8 @@ struct ZoomGroup {
 [[nodiscard]] BoardTarget board_of(const IntrinsicsArguments& arguments);
 
 /// Reads pictures and detects the board in each of them. Throws InputError for fewer than two pictures, for
-/// unreadable pictures, and for pictures of different sizes. Also throws it if more pictures show a part of a
-/// larger board than a board of this size.
+/// unreadable pictures, and for pictures of different sizes. Also throws it if most of the pictures show a
+/// board with more points than `board`.
 [[nodiscard]] BoardPictures look_for_board(const std::vector<std::string>& files, const BoardTarget& board,
                                            const std::string& option, Progress& progress);
 
@@ -42,7 +42,8 @@ struct ZoomGroup {
 /// Returns the picture files in a folder, sorted by name. Throws InputError if the path is not a folder.
 [[nodiscard]] std::vector<std::string> pictures_in(const std::string& folder);
 
-/// Calibrates cameras whose pictures correspond one to one. Throws InputError if a picture is given twice.
+/// Calibrates one camera, or two cameras whose pictures with equal index were taken at the same time. Throws
+/// InputError if a picture is given twice.
 [[nodiscard]] IntrinsicsFit fit_pictures(const IntrinsicsArguments& arguments, const BoardTarget& board,
                                          const std::vector<BoardPictures>& pictures);
 

@@ -108,7 +108,8 @@ TEST_F(IntrinsicsCommand, MeasuresACameraAndKeepsEarlierFiles) {
   EXPECT_LT(number(found, "rms_px"), 0.15);
   EXPECT_EQ(*camera.find("views_used")->as<std::int64_t>(), 5);
   EXPECT_EQ(camera.find("covariance")->as<Node::Array>()->size(), 4U);
-  EXPECT_THAT(*entry(camera, "views", 5).find("reason")->as<std::string>(), HasSubstr("no complete board"));
+  EXPECT_THAT(*entry(camera, "views", 5).find("reason")->as<std::string>(),
+              HasSubstr("does not contain a complete board"));
   EXPECT_EQ(*found.find("file")->as<std::string>(), path("cameras.toml"));
   const std::string first = read_text_file(path("cameras.toml"), 1 << 20);
   const auto written = read_as<MeasuredCameras>(read_toml_file(path("cameras.toml"))).camera;
@@ -190,7 +191,7 @@ TEST_F(IntrinsicsCommand, MeasuresAZoom) {
     ASSERT_NE(uncertain.find("notes"), nullptr);
     const auto& notes = *uncertain.find("notes")->as<Node::Array>();
     ASSERT_EQ(notes.size(), 1U);
-    EXPECT_NE(notes[0].as<std::string>()->find("zoom3: its stated zoom ratio is 5 times"), std::string::npos);
+    EXPECT_NE(notes[0].as<std::string>()->find("zoom3: the given zoom ratio is 5 times"), std::string::npos);
     arguments_.zooms = zooms, arguments_.rig = rig;
   }
   // The lens replaces that of an existing camera.
@@ -275,7 +276,7 @@ TEST_F(IntrinsicsCommand, RefusesTheNumberOfAPartOfTheBoard) {
         write(fmt::format("{}.png", i), board_picture(circles, lens, X_CB, 320, 240)));
   }
   arguments_.pattern = "circles", arguments_.board = "6x5";
-  EXPECT_THAT(refusal(), HasSubstr("--board: 6x5: the board's pattern continues"));
+  EXPECT_THAT(refusal(), HasSubstr("--board: 6x5: the board has more points than this"));
   arguments_.board = "7x5";
   EXPECT_EQ(*entry(answer(exit_done), "cameras", 0).find("views_used")->as<std::int64_t>(), 3);
 }
@@ -307,7 +308,7 @@ TEST_F(IntrinsicsCommand, RefusesPicturesThatItCannotUse) {
   arguments_.images = {};
   EXPECT_THAT(refusal(), HasSubstr("--left"));
   arguments_.left = {good, good}, arguments_.right = {good};
-  EXPECT_THAT(refusal(), HasSubstr("--right: 1 picture for 2 of --left: expected one for each"));
+  EXPECT_THAT(refusal(), HasSubstr("--right: 1 picture for 2 of --left: expected one per picture of --left"));
   arguments_.right = {good, good}, arguments_.board = "6x4";
   EXPECT_THAT(refusal(), HasSubstr("upside down"));
 }
@@ -354,7 +355,7 @@ TEST_F(IntrinsicsCommand, PrintsAShortTableUnlessAskedForJson) {
   EXPECT_THAT(out.str(), HasSubstr("fx (px)         26"));
   EXPECT_THAT(out.str(), HasSubstr(" +- "));
   EXPECT_THAT(out.str(), HasSubstr("pictures used   5 of 6\n"));
-  EXPECT_THAT(out.str(), HasSubstr("blank.png: no complete board"));
+  EXPECT_THAT(out.str(), HasSubstr("blank.png: the picture does not contain a complete board"));
   EXPECT_THAT(out.str(), HasSubstr("file: " + path("cameras.toml")));
   EXPECT_LT(std::ranges::count(out.str(), '\n'), 15);
   EXPECT_EQ(err.str(), "") << "no terminal";

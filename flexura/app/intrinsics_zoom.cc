@@ -64,8 +64,8 @@ std::vector<std::string> notes_on_ratios(const std::vector<MeasuredZoom>& zooms)
                  seen = zoom.focal_length() / first.focal_length();
     if (!(std::abs(std::log(reported / seen)) <= far))
       notes.push_back(
-          fmt::format("{}: its stated zoom ratio is {:.4g} times that of {}, but its measured focal length "
-                      "is {:.4g} times as long",
+          fmt::format("{}: the given zoom ratio is {:.4g} times that of {}, but the measured focal length is "
+                      "{:.4g} times as long",
                       zoom.group.folder, reported, first.group.folder, seen));
   }
   return notes;
@@ -100,8 +100,8 @@ Node zoom_answer(const IntrinsicsArguments& arguments, const BoardTarget& board,
     const auto files = pictures_in(group.folder);
     zoom.pictures = look_for_board(files, board, group.folder, work.piece(zooms.size() - 1));
     if (zoom.pictures.size != zooms.front().pictures.size)
-      throw input_error(group.folder,
-                        fmt::format("pictures of another size than in {}", zooms.front().group.folder));
+      throw input_error(group.folder, fmt::format("the pictures do not have the size of those in {}",
+                                                  zooms.front().group.folder));
     zoom.fit = fit_pictures(arguments, board, {zoom.pictures});
     if (!zoom.fit.is_found && reason.empty()) reason = group.folder + ": " + zoom.fit.reason;
   }
@@ -110,7 +110,7 @@ Node zoom_answer(const IntrinsicsArguments& arguments, const BoardTarget& board,
   if (reason.empty()) {
     camera.lens = zoom_lens(zooms);
     if (const auto fault = ZoomTable::fault(camera.lens))
-      reason = fmt::format("the pictures give no valid zoom table: {}: {}", fault->path, fault->what);
+      reason = fmt::format("the result is not a valid zoom table: {}: {}", fault->path, fault->what);
   }
   Node::Table answer{{"found", {}, {reason.empty(), {}}}};
   if (!reason.empty()) answer.push_back({"reason", {}, text_node(reason)});

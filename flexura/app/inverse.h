@@ -13,7 +13,7 @@ namespace flexura {
 /// (docs/command-line.md). The answer is one line of JSON without its line end:
 /// {"converged":..,"reason":..,"bends":[[bx,by],...],"stretches":[..],"position_error":..,"angle_error":..}.
 /// For a planar arm it has "archings" instead of "bends". If the search did not converge, it also has
-/// "nearest" and "distance"; with "all" it also has "solutions". A line that cannot be answered gives
+/// "nearest" and "distance"; with "all" it also has "solutions". The answer to a line with an error is
 /// {"error":"..."}. Never throws because of the line's contents.
 [[nodiscard]] std::string answer_inverse(const ArmModel& arm, std::string_view line);
 /// Answers one line of `flexura ik` for an arm of arcs.

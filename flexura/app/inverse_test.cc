@@ -202,7 +202,7 @@ TEST(AnswerInverse, AnswersABadLineWithItsError) {
       {R"({"curve":[[0,0,0],[0,1e-300,0]]})", "has no length"},
       {R"({"curve":[[0,0,0],[0,1,0]],"direction":[0,1,0]})", "curve: cannot be combined"},
       {R"({"positon":[0,1,0]})", "did you mean \\\"position\\\"?"},
-      {R"({"position":[0,1,0],"position":[0,1,0]})", "given twice"},
+      {R"({"position":[0,1,0],"position":[0,1,0]})", "occurs twice"},
   };
   for (const auto& [line, error] : lines) {
     EXPECT_THAT(answer_inverse(limited_arm(), line), HasSubstr(error)) << line;

@@ -21,7 +21,7 @@ namespace {
 const Table<RodRequest>& fields_of(const RodRequest*) {
   static const auto table = [] {
     Table<RodRequest> made("linearise request",
-                           "Forces on the arm in the equilibrium at which its motion is linearised.");
+                           "Forces on the arm at the equilibrium about which the motion is linearised.");
     add_rod_fields(made);
     return made;
   }();

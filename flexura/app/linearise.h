@@ -17,15 +17,14 @@ namespace flexura {
 /// All vectors are in the frame of the arm's base. An answer depends only on its line.
 class LineariseAnswers {
  public:
-  /// Throws std::invalid_argument if the arm has no computable rod (rod_of, rod_problems), or a rod without
-  /// mass, for which there is no dynamics (RodDynamics). Also throws it for tendons with friction, which have
-  /// no linear model.
+  /// Throws std::invalid_argument if the arm has no computable rod (rod_of, rod_problems) or no mass
+  /// (RodDynamics). Also throws it for tendons with friction, which have no linear model.
   LineariseAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
   /// Returns one line of JSON without its line end: {"converged":..,"reason":..}. If an equilibrium was
   /// found, it also has "stable":..,"tip":.., the names of "states", "inputs" and "outputs", the matrices
-  /// "A", "B" and "C" by rows, "eigenvalues":[[real,imaginary],..], "frequencies_hz" and "damping_ratios". A
-  /// line that cannot be answered gives {"error":"..."}. Never throws because of the line's contents.
+  /// "A", "B" and "C" by rows, "eigenvalues":[[real,imaginary],..], "frequencies_hz" and "damping_ratios".
+  /// The answer to a line with an error is {"error":"..."}. Never throws because of the line's contents.
   [[nodiscard]] std::string answer(std::string_view line);
 
  private:

@@ -233,7 +233,7 @@ TEST(Linearise, AnswersABadLineWithItsError) {
   const std::vector<std::pair<const char*, const char*>> lines{
       {"", "not JSON"},
       {"[]", "expected a table"},
-      {R"({"tensions":[1]})", "tensions: 1 given: expected 2, one for each tendon"},
+      {R"({"tensions":[1]})", "tensions: 1 given: expected 2 values, one per tendon"},
       {R"({"tensions":[0,-1]})", "tensions[1] = -1: expected a number from 0 to"},
       {R"({"displacements":[0]})", "displacements: 1 given: expected 2"},
       {R"({"tensions":[0,0],"displacements":[0,0]})",

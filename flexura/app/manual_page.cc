@@ -69,8 +69,7 @@ std::string manual_page(const ProgramHelp& help) {
          ".SH \"EXIT STATUS\"\n.TP\n.B 0\nDone.\n.TP\n.B 1\nUnsafe, or a target was not reached.\n.TP\n.B "
          "2\nBad "
          "input: one line states the file, the line, what is wrong and what was expected.\n.TP\n.B 3\nThe "
-         "system "
-         "failed: a file could not be written, and the like.\n";
+         "system failed: for example, a file could not be written.\n";
 }
 
 }  // namespace flexura

@@ -119,15 +119,15 @@ int measure_many(const MeasureArguments& arguments, std::span<const MeasureConfi
 
 int measure_command(const MeasureArguments& arguments, std::ostream& out) {
   if (!arguments.overlay.empty()) {
-    if (arguments.images.size() != 1) throw input_error("--overlay", "expected one picture to draw it over");
+    if (arguments.images.size() != 1)
+      throw input_error("--overlay", "expected one picture, over which the findings are drawn");
     if (std::filesystem::path(arguments.overlay).extension() != ".png")
       throw input_error("--overlay",
                         fmt::format("\"{}\": expected a file name that ends in .png", arguments.overlay));
     std::error_code none;
     if (std::filesystem::equivalent(arguments.overlay, arguments.images.front(), none))
-      throw input_error(
-          "--overlay",
-          fmt::format("\"{}\" is the picture that is measured: expected another file", arguments.overlay));
+      throw input_error("--overlay", fmt::format("\"{}\" is the measured picture: expected another file",
+                                                 arguments.overlay));
   }
   const auto configs = configs_of(arguments);
   return configs.size() == 1 ? measure_one(arguments, configs.front(), out)

@@ -16,7 +16,7 @@
 
 namespace flexura {
 
-/// The objects that `flexura measure` can look for.
+/// Objects that `flexura measure` can find.
 enum class MeasureTarget { arm, etalon, circle, markers };
 const std::vector<std::string>& names_of(const MeasureTarget*);
 
@@ -27,8 +27,7 @@ struct MeasureConfig {
   /// The camera that took the picture, if known; its pose is not used.
   std::optional<MeasuredCamera> camera;
   std::optional<double> radius;  ///< Radius of the arm, m, if known.
-  double gamma = 1;  ///< Exponent of the pixel values, which are light to the power 1/gamma; replaces the
-                     ///< camera's gamma.
+  double gamma = 1;  ///< A pixel value is light to the power 1/gamma. Replaces the camera's gamma.
 };
 
 /// The result of measuring one picture.
@@ -50,7 +49,8 @@ struct MeasureArguments {
   std::string what = "arm";
   std::string camera;  ///< File of measured cameras; "": no file.
   std::optional<double> radius;
-  std::optional<double> gamma;  ///< Default: the gamma in the file of cameras; without a file, 1.
+  /// Gamma of the pictures. Default: the gamma in the file of cameras, or 1 without a file.
+  std::optional<double> gamma;
   ThresholdArguments threshold;
   std::vector<double> base;  ///< Pixel of the arm's base, (u, v), px; empty: unknown.
   std::string overlay;       ///< Picture file to write; "": no file.

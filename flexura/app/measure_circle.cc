@@ -52,9 +52,8 @@ bool measure_circle(const Job& job) {
   std::vector<std::string> notes;
   if (figure.touches_border) notes.emplace_back("the picture's border cuts the figure");
   if (points.size() < figure.points.size())
-    notes.push_back(
-        fmt::format("{} of {} points of the border are excluded because they are not on the curve",
-                    figure.points.size() - points.size(), figure.points.size()));
+    notes.push_back(fmt::format("{} of {} border points are excluded because they are not on the curve",
+                                figure.points.size() - points.size(), figure.points.size()));
   job.answer.add("notes", texts_node(notes))
       .add("area", {figure.area, {}})
       .add("blur", number_node(figure.blur))

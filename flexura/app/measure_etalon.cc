@@ -36,7 +36,7 @@ bool measure_etalon(const Job& job) {
   }
   std::vector<std::string> notes;
   if (seen.touches_border) notes.emplace_back("the picture's border cuts the cylinder");
-  if (seen.lines.empty()) notes.emplace_back("no red line is seen");
+  if (seen.lines.empty()) notes.emplace_back("no red line is visible");
   job.answer.add("notes", texts_node(notes))
       .add("rows", {Node::Array{{static_cast<std::int64_t>(seen.top), {}},
                                 {static_cast<std::int64_t>(seen.bottom), {}}},

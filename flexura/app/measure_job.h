@@ -49,7 +49,7 @@ class TableMaker {
   Node::Table members_;
 };
 
-/// Adds the keys `threshold`, `method` and `figure`.
+/// Adds the keys `threshold`, `method` and `figure` to `answer`.
 void add_threshold(const Threshold& threshold, TableMaker& answer);
 
 /// A picture to be measured, its settings and its outputs.

@@ -326,7 +326,7 @@ TEST(Measure, SaysThatAPictureIsTooDarkOrBlurred) {
   // Means over 15 x 15 px, twice: a standard deviation of 6.1 px.
   Image<std::uint8_t> blurred = clear;
   for (int round = 0; round < 2; ++round) blurred = box_blurred(blurred, 7);
-  EXPECT_THAT(reason_of(blurred), HasSubstr("blurred by"));
+  EXPECT_THAT(reason_of(blurred), HasSubstr("their blur is about"));
   // A sharp figure that is not a tube gets neither reason.
   Image<std::uint8_t> star(320, 240, 1, 220);
   for (int v = 0; v < 240; ++v)

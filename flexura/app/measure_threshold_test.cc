@@ -121,7 +121,8 @@ TEST_F(MeasureBy, AFixedLevelAndTheFigureAreHeeded) {
         std::pair(250.0, "the fixed level 250 is brighter than nearly all of the picture: ")}) {
     const Node none = measured_by(picture, {.level = level}, exit_missed);
     EXPECT_FALSE(*none.find("found")->as<bool>());
-    const std::string reason = word(none, "reason"), brightnesses = "its two brightnesses are 34 and 220, ";
+    const std::string reason = word(none, "reason"),
+                      brightnesses = "the two classes have the mean brightnesses 34 and 220, ";
     EXPECT_EQ(reason.substr(0, reason.rfind(", ") + 2), why + brightnesses);
   }
   EXPECT_EQ(word(measured_by(picture, {.figure = "dark"}), "figure"), "dark");

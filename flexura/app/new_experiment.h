@@ -24,7 +24,7 @@ struct NewArguments {
   std::string file;  ///< File to write; "": the kind's name with ".toml" in the working folder.
 };
 
-/// Writes the template and prints commands that can be tried with it. Throws InputError if the file exists.
+/// Writes the template and prints commands that use it. Throws InputError if the file exists.
 int new_command(const NewArguments& arguments, std::ostream& out);
 
 }  // namespace flexura

@@ -15,7 +15,7 @@ namespace {
 void add_render(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* render = add_command(app, "render", command_group::pictures,
-                                 "Write the picture that a camera takes of an experiment",
+                                 "Render the picture of one of an experiment's cameras",
                                  "flexura render experiment.toml --camera front --time 1.5 --out front.png");
   render->add_option("EXPERIMENT", arguments->experiment, "The experiment file (TOML)")
       ->type_name("")
@@ -26,9 +26,9 @@ void add_render(CLI::App& app, Command& chosen) {
   render->add_option("--out", arguments->out, "The image file to write (.png)")
       ->type_name("FILE")
       ->required();
-  render->add_flag("--model", arguments->model, "Draw the rig of the model, without [truth]");
+  render->add_flag("--model", arguments->model, "Draw the nominal rig: ignore [truth]");
   render->add_flag("--truth", arguments->truth,
-                   "Also write the ground truth from the geometry: depth, labels, curves");
+                   "Also write exact depth, labels and curves from the geometry");
   add_set_option(*render, arguments->sets);
   render->callback(
       [&chosen, arguments] { chosen = [arguments] { return render_command(*arguments, std::cout); }; });
@@ -42,7 +42,7 @@ void add_threshold_options(CLI::App& command, ThresholdArguments& threshold) {
   command.add_option("--level", threshold.level, "The fixed threshold, 0 to 255")->type_name("LEVEL");
   command
       .add_option("--figure", threshold.figure,
-                  "Whether the arm is dark or bright (default: unlike the border)")
+                  "Whether the arm is dark or bright (default: the opposite of the picture's border)")
       ->type_name("dark|bright");
 }
 
@@ -60,23 +60,25 @@ void add_measure(CLI::App& app, Command& chosen) {
       ->type_name("arm|etalon|circle|markers");
   measure
       ->add_option("--camera", arguments->camera,
-                   "The calibrated cameras (TOML): one, or one for each picture")
+                   "File of calibrated cameras (TOML): one camera for all pictures, or one per picture")
       ->type_name("FILE");
-  measure->add_option("--radius", arguments->radius, "Radius of the arm, m; with it the depths are estimated")
+  measure
+      ->add_option("--radius", arguments->radius,
+                   "Radius of the arm, m: makes it possible to estimate depths")
       ->type_name("R");
   measure
       ->add_option("--gamma", arguments->gamma,
                    "Gamma of the pictures: value = light^(1/G); 2.2 for most cameras' files")
       ->type_name("G");
   add_threshold_options(*measure, arguments->threshold);
-  measure->add_option("--base", arguments->base, "A place near the base of the arm, px: U,V")
+  measure->add_option("--base", arguments->base, "Pixel near the base of the arm: U,V")
       ->type_name("U,V")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->expected(2);
   measure
       ->add_option("--overlay", arguments->overlay,
-                   "Write the picture with what was found drawn over it (.png)")
+                   "Write the picture with the findings drawn over it (.png)")
       ->type_name("FILE");
   measure->callback(
       [&chosen, arguments] { chosen = [arguments] { return measure_command(*arguments, std::cout); }; });
@@ -93,7 +95,7 @@ void add_estimate(CLI::App& app, Command& chosen) {
       ->required();
   estimate
       ->add_option("--cameras", arguments->cameras,
-                   "The calibrated cameras (TOML), in the order of the pictures")
+                   "File of calibrated cameras (TOML), in the order of the pictures")
       ->type_name("FILE")
       ->required();
   estimate->add_option("--base", arguments->base, "Position of the base of the arm, m: X,Y,Z")
@@ -102,11 +104,11 @@ void add_estimate(CLI::App& app, Command& chosen) {
       ->allow_extra_args(false)
       ->expected(3);
   estimate->add_option("--length", arguments->length, "Length of the arm, m")->type_name("L");
-  estimate->add_option("--arm", arguments->arm, "The sections of the arm, if they are known (TOML)")
+  estimate->add_option("--arm", arguments->arm, "File with the sections of the arm, if they are known (TOML)")
       ->type_name("FILE");
   estimate
       ->add_option("--markers", arguments->markers,
-                   "Arc lengths of the arm's bands: m, or percent of its length: 25%")
+                   "Arc lengths of the arm's bands, m, or percent of its length: 25%")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("S,...");
@@ -139,7 +141,7 @@ void add_intrinsics(CLI::App& app, Command& chosen) {
                    "A folder of pictures at one zoom: RATIO=, RATIO@COUNT= or @COUNT=FOLDER (repeatable)")
       ->type_name("ZOOM=FOLDER")
       ->allow_extra_args(false);
-  intrinsics->add_option("--board", arguments->board, "Inner corners, or circles: COLUMNSxROWS")
+  intrinsics->add_option("--board", arguments->board, "Number of inner corners or circles: COLUMNSxROWS")
       ->type_name("CxR")
       ->required();
   intrinsics
@@ -153,7 +155,8 @@ void add_intrinsics(CLI::App& app, Command& chosen) {
                    "Number of the coefficients k1, k2, p1, p2, k3 to estimate, 0 to 5 (default: 5)")
       ->type_name("N");
   intrinsics
-      ->add_option("--hold-out", arguments->hold_out, "Hold out every Nth view from the fit, as a check")
+      ->add_option("--hold-out", arguments->hold_out,
+                   "Exclude every Nth view from the fit and test the fit with it")
       ->type_name("N");
   intrinsics->add_option("--name", arguments->names, "The camera's name; twice for a pair")
       ->type_name("NAME")
@@ -173,9 +176,11 @@ void add_intrinsics(CLI::App& app, Command& chosen) {
       ->expected(4);
   intrinsics->add_option("--out", arguments->out, "Write the calibrated cameras into a file (.toml)")
       ->type_name("FILE");
-  intrinsics->add_option("--rig", arguments->rig, "Write a file that experiments can include (.toml)")
+  intrinsics
+      ->add_option("--rig", arguments->rig, "Write a file of cameras that experiments can include (.toml)")
       ->type_name("FILE");
-  intrinsics->add_option("--rig-from", arguments->rig_from, "Experiment whose cameras the rig file takes")
+  intrinsics
+      ->add_option("--rig-from", arguments->rig_from, "Experiment whose cameras are copied into the rig file")
       ->type_name("EXPERIMENT");
   intrinsics->add_flag("--json", arguments->json,
                        "Print one JSON document with covariances and all pictures");

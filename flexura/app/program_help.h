@@ -5,7 +5,7 @@
 
 namespace flexura {
 
-/// The kinds of values of options and arguments.
+/// Kinds of values of options and arguments.
 enum class Takes {
   nothing,     ///< A flag.
   text,        ///< Any text, such as a number or a name.
@@ -18,7 +18,9 @@ enum class Takes {
 /// One option or positional argument of a command, as its help shows it.
 struct OptionHelp {
   std::vector<std::string>
-      names;  ///< Names of an option, "-h", "--help"; for a positional argument its only name, "EXPERIMENT".
+      /// Names of an option, such as "-h" and "--help", or the name of a positional argument, such as
+      /// "EXPERIMENT".
+      names;
   std::string value;                 ///< Placeholder of the value: "DIR"; "" for a flag.
   std::string meaning;               ///< Description in one sentence.
   Takes takes = Takes::text;         ///< Kind of the value.
@@ -35,7 +37,7 @@ struct CommandHelp {
   std::vector<OptionHelp> options;
 };
 
-/// The whole command line, from which the help, the shells' completion and the manual page are made.
+/// Description of all commands. The help, the shells' completion and the manual page are made from it.
 struct ProgramHelp {
   std::string name;
   std::string version;
@@ -43,8 +45,7 @@ struct ProgramHelp {
   std::vector<CommandHelp> commands;  ///< Commands in the order of the help.
 };
 
-/// Returns the completion script of a shell. The script needs only the shell, not the package
-/// bash-completion.
+/// Returns the completion script of a shell. The script does not need the package bash-completion.
 [[nodiscard]] std::string bash_completion(const ProgramHelp& help);
 [[nodiscard]] std::string zsh_completion(const ProgramHelp& help);
 

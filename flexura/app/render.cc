@@ -37,7 +37,7 @@ std::size_t place_of(const std::vector<CameraConfig>& cameras, const std::string
 
 void check_arguments(const RenderArguments& arguments, const Schedule& schedule) {
   if (!std::isfinite(arguments.time) || arguments.time < 0 || arguments.time > schedule.duration())
-    throw input_error("--time", fmt::format("{} s is not in the experiment: expected 0 to {:.6g} s",
+    throw input_error("--time", fmt::format("{} s is outside the experiment's time: expected 0 to {:.6g} s",
                                             arguments.time, schedule.duration()));
   if (std::filesystem::path(arguments.out).extension() != ".png")
     throw input_error("--out", fmt::format("\"{}\": expected a file name that ends in .png", arguments.out));
@@ -59,9 +59,10 @@ int render_command(const RenderArguments& arguments, std::ostream& out) {
   Filming filming(experiment);
   const double played = play_unfilmed(next.end, schedule, filming);
   if (arguments.time > played) {
-    throw input_error("--time",
-                      fmt::format("{} s is not in the run: the run ends at {:.6g} s with an impossible shape",
-                                  arguments.time, played));
+    throw input_error(
+        "--time",
+        fmt::format("{} s is after the run's end: the run ends at {:.6g} s with an impossible shape",
+                    arguments.time, played));
   }
   const bool has_next = next.start <= played;
   const Shot shot = filming.shot(place, arguments.time);

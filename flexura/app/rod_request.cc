@@ -23,7 +23,7 @@ void check_rod_request(const Rod& rod, const RodRequest& request, Reader& reader
   const auto check_count = [&](const std::optional<std::vector<double>>& given, const char* name) {
     if (!given || given->size() == rod.tendons.size()) return;
     reader.problem_at(
-        name, fmt::format("{} given: expected {}, one for each tendon", given->size(), rod.tendons.size()));
+        name, fmt::format("{} given: expected {} values, one per tendon", given->size(), rod.tendons.size()));
   };
   check_count(request.tensions, "tensions");
   check_count(request.displacements, "displacements");

@@ -18,11 +18,11 @@ struct RodRequest {
   std::optional<std::vector<double>> displacements;  ///< Lengths by which the tendons are pulled in, m.
   std::array<double, 3> tip_force = {0, 0, 0};       ///< Force at the tip, N.
   std::array<double, 3> tip_moment = {0, 0, 0};      ///< Moment at the tip, N m.
-  std::optional<std::array<double, 3>> gravity;      ///< Gravity, m/s^2; missing: that of the arm's file.
+  std::optional<std::array<double, 3>> gravity;  ///< Gravity, m/s^2; default: the gravity in the arm's file.
 
   /// Returns the tendons' prescribed tensions or displacements.
   [[nodiscard]] TendonInput tendons() const;
-  /// Returns the arm's loads, with this request's gravity and the tip's force and moment.
+  /// Returns the loads `of_arm` with this request's gravity, tip force and tip moment.
   [[nodiscard]] RodLoads loads(const Rod& rod, RodLoads of_arm) const;
 };
 
@@ -45,8 +45,8 @@ Table<Request>& add_rod_fields(Table<Request>& table) {
               .range = between(-1e6, 1e6)});
 }
 
-/// Reports a number of tensions or displacements that does not match the rod's tendons. Also reports tensions
-/// that are given together with displacements.
+/// Reports an error if the number of tensions or displacements is not the number of tendons, or if both are
+/// given.
 void check_rod_request(const Rod& rod, const RodRequest& request, Reader& reader);
 
 }  // namespace flexura

@@ -28,8 +28,8 @@ struct StaticsRequest : RodRequest {
 
 const Table<StaticsRequest>& fields_of(const StaticsRequest*) {
   static const auto table = [] {
-    Table<StaticsRequest> made("statics request",
-                               "Forces on the arm, and the positions along it for the answer.");
+    Table<StaticsRequest> made(
+        "statics request", "Forces on the arm, and positions along the arm whose poses the answer gives.");
     add_rod_fields(made)
         .field("target", &StaticsRequest::target,
                {.meaning = "target of the arm, instead of tensions or displacements"})
@@ -158,12 +158,13 @@ std::string StaticsAnswers::answer(std::string_view line) {
       members.push_back({"at", {}, place_nodes(chain, places)});
     }
     if (has_answer && found.coarse_section)
-      members.push_back({"note",
-                         {},
-                         {fmt::format("section {}: strongly bent between its guide disks; for an error below "
-                                      "1e-3 of the length give it more material.modes.bend, or more disks",
-                                      *found.coarse_section + 1),
-                          {}}});
+      members.push_back(
+          {"note",
+           {},
+           {fmt::format("section {}: strongly bent between its guide disks; for an error below 1e-3 of the "
+                        "length, increase material.modes.bend or the number of disks",
+                        *found.coarse_section + 1),
+            {}}});
     return write_json({std::move(members), {}});
   } catch (const InputError& error) {
     return write_json(error_node(joined(error.problems())));

@@ -25,13 +25,13 @@ class StaticsAnswers {
   /// Returns one line of JSON without its line end: {"converged":..,"reason":..}. If an equilibrium was
   /// found, it also has
   /// "tip":{"position":[..],"rotation":[w,x,y,z]},"tensions":[..],"displacements":[..],"strain_energy":..,
-  /// "stable":..,"snapped":..,"ambiguous":.. and, if requested, "at":[poses]. For a target, the tensions are
-  /// those of least effort that reach the target or come nearest. The answer then also has "reached":.. and
-  /// "residual":.. (m), "why_not":"..." if the target is not reached, and "residual_angle":.. (rad) if an
-  /// orientation was requested. A line that cannot be answered gives {"error":"..."}. Never throws because of
-  /// the line's contents.
+  /// "stable":..,"snapped":..,"ambiguous":.. and, if requested, "at":[poses]. For a target, the tensions have
+  /// the least effort among those that reach the target or come nearest to it. The answer then also has
+  /// "reached":.. and "residual":.. (m), "why_not":"..." if the target is not reached, and
+  /// "residual_angle":.. (rad) if an orientation was requested. The answer to a line with an error is
+  /// {"error":"..."}. Never throws because of the line's contents.
   [[nodiscard]] std::string answer(std::string_view line);
-  /// Returns why the line cannot be answered; "" if it can.
+  /// Returns the error in the line; "" for a valid line.
   [[nodiscard]] std::string problem(std::string_view line) const;
 
  private:

@@ -12,12 +12,12 @@
 
 namespace flexura {
 
-/// Largest number of requested positions along an arm. Each becomes a node of its rod.
+/// Largest number of positions along an arm in one request. Each position becomes a node of the rod.
 inline constexpr std::size_t max_statics_places = 1000;
 
 /// Target position of a point of an elastic arm, in the frame of the arm's base.
 struct StaticsPoint {
-  double at = 0;  ///< Arc length at rest from the base, m.
+  double at = 0;  ///< Arc length from the base in the undeformed arm, m.
   std::array<double, 3> position = {0, 0, 0};
 };
 
@@ -30,9 +30,9 @@ struct StaticsTarget {
   std::optional<std::vector<StaticsPoint>> shape;  ///< Target positions of points along the arm.
   double most_tension = 1000;                      ///< Largest tension of each tendon, N.
 
-  /// Returns the target for a rod that has places() as nodes.
+  /// Returns the target as a RodTarget. `rod` must have the positions places() as nodes.
   [[nodiscard]] RodTarget target(const Rod& rod) const;
-  /// Returns the places along the rod of the points of `shape`.
+  /// Returns the positions along the rod of the points of `shape`.
   [[nodiscard]] std::vector<RodPlace> places(const Rod& rod) const;
 };
 
@@ -41,7 +41,7 @@ struct StaticsTarget {
 /// Returns the fields of StaticsTarget.
 [[nodiscard]] const Table<StaticsTarget>& fields_of(const StaticsTarget* null);
 
-/// Returns the place of a rod at the arc length `s` at rest, m, from 0 to the rod's length.
+/// Returns the position along a rod whose arc length at rest is `s`, m, from 0 to the rod's length.
 [[nodiscard]] RodPlace place_along(const Rod& rod, double s);
 
 /// Reports errors of a target for the rod: no target, two orientations, positions beyond the tip, or no

@@ -250,7 +250,7 @@ TEST(AnswerStatics, AnswersABadLineWithItsError) {
   const std::vector<std::pair<const char*, const char*>> lines{
       {"", "not JSON"},
       {"[]", "expected a table"},
-      {R"({"tensions":[1,2]})", "tensions: 2 given: expected 6, one for each tendon"},
+      {R"({"tensions":[1,2]})", "tensions: 2 given: expected 6 values, one per tendon"},
       {R"({"tensions":[]})", "tensions: 0 given: expected 6"},
       {R"({"tensions":[0,0,0,0,0,-1]})", "tensions[5] = -1: expected a number from 0 to"},
       {R"({"tensions":[0,0,0,0,0,1e300]})", "tensions[5] = 1e+300: expected a number from 0 to"},

@@ -61,7 +61,7 @@ TEST_F(StoppedProgram, EndsEarlyAndLeavesWhatItHas) {
     const auto& reasons = *reported.find("reasons")->as<Node::Array>();
     ASSERT_EQ(reasons.size(), 1U);
     EXPECT_EQ(*reasons[0].as<std::string>(),
-              fmt::format("it was stopped at {:.6g} s", *reported.find("duration")->as<double>()));
+              fmt::format("the run was stopped at {:.6g} s", *reported.find("duration")->as<double>()));
     EXPECT_EQ(ended.err, "cancelled: " + *reasons[0].as<std::string>() + "\n");
     const McapReader log(path("long/log.mcap"));
     EXPECT_FALSE(log.truncated());
@@ -127,7 +127,7 @@ TEST_F(StoppedProgram, StopsInTheCheckBeforeTheRun) {
   kill(child, SIGTERM);
   const Ended ended = wait(child);
   EXPECT_EQ(ended.status, 128 + SIGTERM);
-  EXPECT_EQ(ended.err, "cancelled: it was stopped at 0 s\n");
+  EXPECT_EQ(ended.err, "cancelled: the run was stopped at 0 s\n");
   EXPECT_THAT(summary(), HasSubstr("\"outcome\": \"cancelled\""));
   EXPECT_THAT(summary(), HasSubstr("cancelled: the motion is not completely checked"));
   EXPECT_FALSE(McapReader(path("long/log.mcap")).truncated());
@@ -144,7 +144,7 @@ TEST_F(StoppedProgram, StopsACheck) {
     EXPECT_EQ(ended.status, 128 + signal);
     EXPECT_EQ(ended.out, "");
     // A signal that comes before the check begins ends the program without a word.
-    EXPECT_THAT(ended.err, testing::AnyOf("", "cancelled: it was stopped before the check was complete\n"));
+    EXPECT_THAT(ended.err, testing::AnyOf("", "cancelled: the check was stopped before it was complete\n"));
   }
 }
 

@@ -11,7 +11,7 @@ namespace flexura {
 /// started by it do not receive these signals. Only one StopSignal may exist at a time.
 class StopSignal {
  public:
-  /// Calls `on_stop` on the waiting thread for every signal received.
+  /// Starts to wait. Every received signal calls `on_stop` on the waiting thread.
   explicit StopSignal(std::function<void()> on_stop = {});
   ~StopSignal();
   StopSignal(const StopSignal&) = delete;

@@ -9,9 +9,11 @@ namespace flexura {
 
 /// Command-line arguments for separating foreground and background.
 struct ThresholdArguments {
-  std::optional<std::string> method = {};  ///< Name of the method; default: otsu.
-  std::optional<double> level = {};        ///< Level from 0 to 255; without a method, it implies `fixed`.
-  std::string figure = {};  ///< Figure, "dark" or "bright"; "": decided from the picture's border.
+  std::optional<std::string> method = {};  ///< Name of the thresholding method; default: otsu.
+  /// Threshold from 0 to 255. If no method is given, a level selects the method `fixed`.
+  std::optional<double> level = {};
+  /// Brightness of the arm, "dark" or "bright"; "": the opposite of the picture's border.
+  std::string figure = {};
 };
 
 /// Returns the checked settings for the arguments. Throws InputError for unknown words, and for a level out

@@ -62,7 +62,7 @@ ViewStart start_of(const std::string& what) {
     start.recording = std::make_shared<const Recording>(what);
     start.results = std::filesystem::path("results") / "view";
   } else if (std::filesystem::path(what).extension() == std::filesystem::path(log_file_name).extension()) {
-    throw input_error(what, "is a log: expected the results folder of `flexura run` that contains it");
+    throw input_error(what, "is a log: expected the results folder that contains this log");
   } else if (what.empty()) {
     start.rig = std::make_shared<const ViewedRig>(
         parse_experiment(embedded::examples.front().text, "the paper's arm"));
@@ -84,10 +84,9 @@ ViewStart start_of(const std::string& what) {
 void require_hosts(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (!is_host(name))
-      throw input_error("--name",
-                        fmt::format("{}: expected the name or the address of a host, with a port or "
-                                    "without, such as lab.example, lab.example:8421 or [::1]",
-                                    text_node(name).brief()));
+      throw input_error("--name", fmt::format("{}: expected a host name or IP address, with or without a "
+                                              "port, such as lab.example, lab.example:8421 or [::1]",
+                                              text_node(name).brief()));
   }
 }
 
@@ -134,9 +133,7 @@ OpenViewer::OpenViewer(ViewStart start, const ViewerArguments& arguments, std::o
   // Without output nobody would know the address.
   if (!out) throw std::runtime_error("cannot write to the standard output");
   if (listens_everywhere(arguments.address))
-    out << "The viewer can be reached at every address of this machine, and at a host name given with "
-           "--name\n"
-        << std::flush;
+    out << "The viewer listens on every address of this machine; --name adds host names\n" << std::flush;
   if (arguments.browser) parts_->page.emplace(parts_->server->url());
 }
 

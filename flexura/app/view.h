@@ -12,17 +12,17 @@
 
 namespace flexura {
 
-/// Response if the program was built without the viewer's page.
+/// Page of a program that was built without the viewer.
 inline constexpr std::string_view no_page_text =
     "This flexura was built without the viewer's page: build it with -DFLEXURA_VIEWER=ON, which needs Node "
     "and npm.\n";
 
 /// Settings for access to a viewer.
 struct ViewerArguments {
-  std::optional<std::uint16_t> port;  ///< Port; default: 8421, or any free port if that is in use.
+  std::optional<std::uint16_t> port;  ///< Port; default: 8421, or any free port if 8421 is in use.
   bool browser = true;                ///< Whether to open a browser if there is a display.
   std::string address = "127.0.0.1";  ///< Address of the interface to listen on.
-  std::vector<std::string> names;     ///< Further host names that requests may use.
+  std::vector<std::string> names;     ///< Further host names that requests to the viewer may contain.
 };
 
 /// Arguments of `flexura view`.

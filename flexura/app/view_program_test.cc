@@ -105,8 +105,8 @@ TEST_F(ViewerProgram, RefusesANameByWhichNobodyCanCallIt) {
       EXPECT_EQ(ended.status, 2) << command << name;
       EXPECT_THAT(ended.err, HasSubstr("--name: ")) << name;
       const bool is_empty = std::string_view(name) == "''";
-      EXPECT_THAT(ended.err, HasSubstr(is_empty ? "expected no empty text"
-                                                : "expected the name or the address of a host"))
+      EXPECT_THAT(ended.err, HasSubstr(is_empty ? "empty text: expected at least one character"
+                                                : "expected a host name or IP address"))
           << name;
       EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;
     }

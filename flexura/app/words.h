@@ -19,8 +19,8 @@ inline void print_line(std::ostream& out, std::string_view label, std::string_vi
   out << label << ": " << one_line(text) << '\n';
 }
 
-/// Returns the enumeration value named by an option's word. Throws InputError with all allowed words if the
-/// word is unknown.
+/// Returns the enumeration value with the name `word`. For an unknown name, throws InputError that lists all
+/// allowed names.
 template <typename E>
 E named(const std::string& option, const std::string& word) {
   const std::vector<std::string>& names = names_of(static_cast<const E*>(nullptr));

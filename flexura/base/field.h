@@ -27,7 +27,7 @@ struct NumberRange {
   [[nodiscard]] std::string text(const UnitSpelling& spelling) const;
 };
 
-/// Returns the range of numbers greater than `min`. In this function and the next three, bounds are in base
+/// Returns the range of numbers greater than `min`. Bounds of this function and the next three are in base
 /// units.
 [[nodiscard]] inline NumberRange above(double min) { return {.min = min, .open_min = true}; }
 /// Returns the range of numbers greater than or equal to `min`.
@@ -46,7 +46,8 @@ struct Count {
   std::size_t max = std::numeric_limits<std::size_t>::max();
 };
 
-/// Description of one field in a table of fields, without the member that stores the field's value.
+/// Description of one field in a table of fields. It does not include the member that stores the field's
+/// value.
 struct Spec {
   /// Meaning of the field, a sentence for error messages, the schema and the reference page.
   std::string meaning = {};
@@ -54,9 +55,10 @@ struct Spec {
   NumberRange range = {};  ///< Range of a number, or of each number of an array.
   Count count = {};        ///< Number of entries of the outermost array.
   bool required = false;
-  /// For a table: a file may contain only some of its fields; the reader gets a complete table.
+  /// For a table: whether a file may contain only some of its fields, although the reader receives a complete
+  /// table.
   bool partial = false;
-  bool one_for_all = false;  ///< For an array: a file may give one value for all entries.
+  bool one_for_all = false;  ///< For an array: whether a file may have one value for all entries.
   /// Effect of omitting the field, if the default value alone does not show the effect.
   std::string default_text = {};
 };
@@ -75,7 +77,7 @@ struct Type {
   std::vector<const TableInfo*> alternatives = {};
 };
 
-/// Everything that a schema or a reference page shows of a field.
+/// Data of a field that a schema or a reference page shows.
 struct FieldInfo {
   std::string name;  ///< The key without a unit's suffix.
   Type type;
@@ -94,7 +96,7 @@ struct TableInfo {
   std::string name;  ///< Name in messages and schemas; for the tables of a one_of, the text of "kind".
   std::string meaning = {};
   std::vector<FieldInfo> fields;
-  /// Fields that had another name in older versions. A document with the old name causes an error that gives
+  /// Fields that had another name in older versions. A document with an old name causes an error that states
   /// the new name.
   std::vector<RenamedField> renamed = {};
 

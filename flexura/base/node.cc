@@ -40,10 +40,11 @@ std::string step_into(Node*& node, std::string_view part, const SourcePosition& 
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
     if (error != std::errc{} || end != part.data() + part.size()) {
-      return fmt::format("\"{}\" names an entry of an array: expected its index, counted from 0", part);
+      return fmt::format("\"{}\" refers to an entry of an array: expected the entry's index, counted from 0",
+                         part);
     }
     if (index >= array->size())
-      return fmt::format("index {} is outside an array of {}", index, array->size());
+      return fmt::format("the index {} is outside an array of size {}", index, array->size());
     node = &(*array)[index];
     return {};
   }
@@ -139,7 +140,7 @@ std::string set_at_path(Node& root, std::string_view path, Node value) {
     const std::size_t dot = rest.find('.');
     const std::string_view part = rest.substr(0, dot);
     if (part.empty())
-      return fmt::format("\"{}\" is not a path: expected names and numbers joined by dots", path);
+      return fmt::format("\"{}\" is not a path: expected names and numbers separated by dots", path);
     if (dot == std::string_view::npos) make_way(*node, part, value.where);
     if (std::string error = step_into(node, part, value.where); !error.empty()) return error;
     if (dot == std::string_view::npos) break;

@@ -16,7 +16,7 @@ struct Node {
   struct Member;
   using Array = std::vector<Node>;
   using Table = std::vector<Member>;  ///< Members in the order written; keys are unique.
-  /// A value that no field accepts, such as a date; `name` describes the value in the error message.
+  /// A value that no field accepts, such as a date. `name` describes the value in error messages.
   struct Other {
     std::string name;
   };
@@ -24,7 +24,7 @@ struct Node {
   using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, Array, Table, Other>;
 
   Value value;
-  SourcePosition where;  ///< Position of the value; the position of its key is Member::where.
+  SourcePosition where;  ///< Position of the value. The position of the value's key is Member::where.
 
   /// Returns the value if it has type T, one of the types in Value; otherwise null. An integer is not a
   /// double.
@@ -58,22 +58,22 @@ struct Node::Member {
   Node node;
 };
 
-/// Makes a node of a number. A number that is not finite gives an empty node, because JSON cannot represent
-/// such numbers.
+/// Makes a node of a number. For a number that is not finite, the node is empty, because JSON cannot
+/// represent such numbers.
 [[nodiscard]] Node number_node(double value);
 /// Makes a node that contains a text.
 [[nodiscard]] Node text_node(std::string value);
 /// Makes a node that contains an array of texts.
 [[nodiscard]] Node texts_node(const std::vector<std::string>& values);
 
-/// Merges `over` into `under`: tables are merged key by key; any other value in `over` replaces the value in
+/// Merges `over` into `under`: tables are merged key by key. Any other value in `over` replaces the value in
 /// `under`.
 void merge(Node& under, Node over);
 
 /// Sets the value at a dotted path, "arm.section.0.length" or "arm.section[0].length", where numbers are
-/// indices of arrays. Makes missing tables. Removes a value of the same quantity in another unit: "length_mm"
-/// if "length" is set. Returns "" on success, otherwise an error text: a part of the path is not a table, or
-/// an index is outside an array.
+/// indices of arrays. Makes missing tables. Removes the value of this quantity in another unit: removes
+/// "length_mm" if "length" is set. Returns "" on success, otherwise an error text: a part of the path is not
+/// a table, or an index is outside an array.
 [[nodiscard]] std::string set_at_path(Node& root, std::string_view path, Node value);
 
 }  // namespace flexura

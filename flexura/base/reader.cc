@@ -255,9 +255,9 @@ UnknownKey unknown_key(std::string_view key, const TableInfo& table, std::string
             meant == table.fields.end() ? nullptr : &*meant};
   }
   if (const FieldInfo* inner = table_with(key, table))
-    return {fmt::format("unknown key; it belongs into {} \"{}\"", inner->type.item ? "each" : "the table",
+    return {fmt::format("unknown key; it belongs in {} \"{}\"", inner->type.item ? "each" : "the table",
                         inner->name)};
-  if (table.fields.empty()) return {"unknown key; no more is expected here"};
+  if (table.fields.empty()) return {"unknown key; no keys are expected here"};
   std::string known;
   for (const FieldInfo& field : table.fields) known += (known.empty() ? "" : ", ") + field.name;
   return {fmt::format("unknown key; expected one of: {}", known)};
@@ -305,7 +305,7 @@ std::vector<FoundField> find_fields(const Node& node, const TableInfo& table, Re
       const Reader::Scope scope(reader, member.key, member.where);
       const SourcePosition& first = slot.member->where;
       const bool same_file = first.source == member.where.source || first.source == nullptr;
-      reader.problem(fmt::format("written twice: {} is already in line {}{}", slot.member->key, first.line,
+      reader.problem(fmt::format("occurs twice: {} is already in line {}{}", slot.member->key, first.line,
                                  same_file ? "" : " of " + *first.source));
       continue;
     }

@@ -13,19 +13,19 @@
 
 namespace flexura {
 
-/// Tracks the current place while a document is read into typed values, and collects the problems found.
-/// Tables of fields (table.h) move the current place. Checks across fields report problems at the position of
-/// a field.
+/// Tracks the current position in a document that is read into typed values, and collects problems. Tables of
+/// fields (table.h) change the current position. Checks across fields report problems at the position of a
+/// field.
 class Reader {
  public:
-  /// Makes a part of the document the reader's current place during the lifetime of this object.
+  /// Makes a part of the document the reader's current position during the lifetime of this object.
   class Scope {
    public:
     Scope(Reader& reader, std::string_view name, const SourcePosition& where);
     /// Enters a field. Messages show the field as written in the file (`key`); checks across fields refer to
     /// its `name`.
     Scope(Reader& reader, std::string_view name, std::string_view key, const SourcePosition& where);
-    /// Enters the entry `index`, counted from 0, of the array at the current place.
+    /// Enters the entry `index`, counted from 0, of the array at the current position.
     Scope(Reader& reader, std::size_t index, const SourcePosition& where);
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
@@ -36,9 +36,9 @@ class Reader {
     std::size_t path_size_;
   };
 
-  /// Reports a problem at the current place: "PATH: what".
+  /// Reports a problem at the current position: "PATH: what".
   void problem(std::string what);
-  /// Reports a problem at `path`, relative to the current place ("task[0].to.bends"). If the document does
+  /// Reports a problem at `path`, relative to the current position ("task[0].to.bends"). If the document does
   /// not contain the path, the position is that of its longest part that the document contains.
   void problem_at(std::string_view path, std::string what);
   /// Reports a problem at the character `offset`, counted from 0, of the text at `path`. The message has the
@@ -82,7 +82,7 @@ class Reader {
 
 /// A field found in a document, with the unit of its key.
 struct FoundField {
-  /// Key and value in the document, which must outlive this pointer; null if the field was omitted.
+  /// Key and value in the document; null if the field was omitted. The document must outlive this pointer.
   const Node::Member* member = nullptr;
   UnitSpelling spelling;  ///< The unit given by the key.
 };

@@ -36,7 +36,7 @@ struct Problem {
 /// Exception for unusable input, with all problems in the order found. The program then exits with status 2.
 class InputError : public std::runtime_error {
  public:
-  /// what() has one line for each of the first 20 problems, and the number of further problems.
+  /// what() has one line for each of the first 20 problems, and states the number of further problems.
   explicit InputError(std::vector<Problem> problems);
   [[nodiscard]] const std::vector<Problem>& problems() const { return problems_; }
 

@@ -72,7 +72,7 @@ class AnyTable {
 };
 
 /// The table of fields of a struct: name, unit, range, default and meaning of each member, defined once. The
-/// typed reader, the error messages, the writer, the schema and the reference page all use this table.
+/// typed reader, the error messages, the writer, the schema and the reference page use this table.
 ///
 /// A struct S has a table if its namespace has a function `const Table<S>& fields_of(const S*)`. Default
 /// values are the members of a default-constructed S.
@@ -94,8 +94,9 @@ class Table : public AnyTable {
     return *this;
   }
 
-  /// Makes a field's old name, with any unit's suffix, an error that gives the new `name`: "is now called
-  /// ...". Throws std::logic_error unless the field `name` was added before.
+  /// Declares an old name of a field. A document with the old name, with any unit's suffix, causes an error
+  /// with the new `name`: "is now called ...". Throws std::logic_error unless the field `name` was added
+  /// before.
   Table& renamed(std::string old_name, std::string name) {
     add_renamed(std::move(old_name), std::move(name));
     return *this;

@@ -187,7 +187,7 @@ TEST(Table, NamesTheNewNameOfARenamedKey) {
 
 TEST(Table, NamesTheTableWhereAKeyBelongs) {
   EXPECT_THAT(problems_of({member("radius_mm", 20.0, 7)}),
-              ElementsAre("cart.toml:7:1: radius_mm: unknown key; it belongs into each \"wheel\""));
+              ElementsAre("cart.toml:7:1: radius_mm: unknown key; it belongs in each \"wheel\""));
   // A misspelt key of this table gets a hint to that key.
   try {
     (void)read_as<Street>(table({member("seats", std::int64_t{3}, 7)}));
@@ -199,7 +199,7 @@ TEST(Table, NamesTheTableWhereAKeyBelongs) {
 
 TEST(Table, RefusesAQuantityWrittenInTwoUnits) {
   EXPECT_THAT(problems_of({member("tilt", 0.5, 3), member("tilt_deg", 3.0, 4)}),
-              ElementsAre("cart.toml:4:1: tilt_deg: written twice: tilt is already in line 3"));
+              ElementsAre("cart.toml:4:1: tilt_deg: occurs twice: tilt is already in line 3"));
 }
 
 TEST(Table, RefusesNumbersThatAreNotFinite) {
@@ -293,9 +293,9 @@ TEST(SetAtPath, ChangesEntriesAndMakesTables) {
   EXPECT_EQ(*root.find("wheel")->as<Node::Array>()->at(0).find("radius")->as<double>(), 3.5);
   EXPECT_EQ(set_at_path(root, "new.deep", {true, {}}), "");
   EXPECT_TRUE(*root.find("new")->find("deep")->as<bool>());
-  EXPECT_EQ(set_at_path(root, "wheel.1.radius", {2.5, {}}), "index 1 is outside an array of 1");
+  EXPECT_EQ(set_at_path(root, "wheel.1.radius", {2.5, {}}), "the index 1 is outside an array of size 1");
   EXPECT_EQ(set_at_path(root, "wheel.x", {2.5, {}}),
-            "\"x\" names an entry of an array: expected its index, counted from 0");
+            "\"x\" refers to an entry of an array: expected the entry's index, counted from 0");
   EXPECT_EQ(set_at_path(root, "wheel.0.radius.x", {2.5, {}}), "nothing named \"x\" inside 3.5");
   EXPECT_THAT(set_at_path(root, "wheel..radius", {2.5, {}}), HasSubstr("is not a path"));
 }

@@ -22,8 +22,8 @@ struct CameraAlone {
 [[nodiscard]] double rms_of(double square_sum, std::size_t points);
 
 /// Calibrates one camera from the views in which the camera saw the board. `size` is the image's width and
-/// height, px. Uses Zhang's closed form and least squares. After a bad result, tries other initial focal
-/// lengths. With fewer than two views the result is not converged.
+/// height, px. Uses Zhang's closed form and least squares. If the result is bad, tries other initial focal
+/// lengths. With fewer than two views, the result is not converged.
 [[nodiscard]] CameraAlone fit_alone(std::span<const Eigen::Vector2d> points, std::span<const BoardView> views,
                                     std::size_t camera, const std::array<int, 2>& size,
                                     const BundleConfig& config);
@@ -40,12 +40,12 @@ struct CameraStep {
 
 /// Disagreement of views about a camera's pose relative to the first camera.
 struct StepSpread {
-  double turn = 0, distance = 0;  ///< Rotation, rad, and distance, m, by which the most deviating view
-                                  ///< differs from the majority.
-  std::size_t view = 0;           ///< Index of the most deviating view in the given views.
+  /// Rotation (rad) and distance (m) between the most deviating view and the majority.
+  double turn = 0, distance = 0;
+  std::size_t view = 0;  ///< Index of the most deviating view in the given views.
 };
-/// Computes deviations from the central step, which has the smallest median rotation to the other steps.
-/// Needs at least one step.
+/// Computes deviations from the central step: the one with the smallest median rotation to the other steps.
+/// Requires at least one step.
 [[nodiscard]] StepSpread step_spread(std::span<const CameraStep> steps);
 
 }  // namespace flexura

@@ -10,9 +10,9 @@
 namespace flexura {
 
 /// Returns whether the board's pattern continues by another column or row beyond the found points, whose
-/// pixels are given. The points then are a part of a larger board, which OpenCV's search accepts. Not used
-/// for asymmetric circles, because OpenCV hardly ever accepts a part of such a board. Needs at least 3 x 3
-/// points.
+/// pixels are given. In this case, the points are a part of a larger board; OpenCV's search accepts such
+/// parts. It is not used for asymmetric circles, because OpenCV hardly ever accepts a part of such a board.
+/// Requires at least 3 x 3 points.
 [[nodiscard]] bool goes_on(const Image<std::uint8_t>& gray, const BoardTarget& board,
                            const std::vector<Eigen::Vector2d>& pixels);
 

@@ -21,13 +21,13 @@ struct BoardView {
 struct BoardBundle {
   std::vector<Intrinsics> lenses;  ///< Intrinsics of each camera.
   std::vector<Pose>
-      cameras;  ///< Pose X_1C of each camera relative to the first camera, whose own pose is fixed.
+      cameras;  ///< Pose X_1C of each camera relative to the first camera. The first pose is fixed.
   std::vector<Pose> boards;  ///< Pose X_1B of the board relative to the first camera, in each view.
 };
 
 /// Settings of a bundle adjustment.
 struct BundleConfig {
-  bool cameras = true;   ///< Whether lenses and camera poses are fitted, in addition to the boards.
+  bool cameras = true;   ///< Whether lenses and camera poses are fitted in addition to the boards.
   int distortion = 5;    ///< Number of fitted distortion coefficients in the order k1, k2, p1, p2, k3; the
                          ///< others keep their values.
   int most_steps = 100;  ///< Limit of BundleFit::steps.
@@ -38,15 +38,16 @@ struct BundleConfig {
 /// Result of a bundle adjustment.
 struct BundleFit {
   BoardBundle bundle;  ///< Fitted unknowns.
-  /// False if no step decreased the sum of squares, or the limit on steps was reached.
+  /// Whether the fit converged. It is false if no step decreased the sum of squares, or if the limit on steps
+  /// was reached.
   bool is_converged = false;
-  int steps = 0;             ///< Number of the first linearization and all steps tried.
+  int steps = 0;             ///< Number of tried steps plus one for the first linearisation.
   double square_sum = 0;     ///< Sum of squared distances between observed and computed pixels, px^2.
   std::size_t points = 0;    ///< Number of observed pixels.
   std::size_t unknowns = 0;  ///< Number of unknowns of cameras and boards.
   /// Information matrix of the cameras' unknowns for noise of 1 px, with the boards' unknowns eliminated. Its
-  /// inverse is the covariance. First come the fitted intrinsics of each camera, in the order of
-  /// `intrinsics_count`. Then, for each camera except the first, the small motion [v; w] of X_1C: p + v,
+  /// inverse is the covariance. The first unknowns are the fitted intrinsics of each camera, in the order of
+  /// `intrinsics_count`. For each camera except the first, the small motion [v; w] of X_1C follows: p + v,
   /// exp(w) R.
   Eigen::MatrixXd information;
 };
@@ -54,9 +55,9 @@ struct BundleFit {
 /// Fits cameras and boards by bundle adjustment (D. C. Brown). Minimizes the squared distances between the
 /// observed pixels in `views` and the computed pixels of `points`, over all cameras and views. The points are
 /// in the board's plane (z = 0 in B). Uses the Levenberg-Marquardt method from `start`. The six unknowns of a
-/// board appear in its own view only. Hence the Schur complement eliminates them from each step, at a cost
+/// board affect only the board's view. Hence the Schur complement eliminates them from each step, at a cost
 /// proportional to the number of views. If an observed point cannot be projected at the start, the result is
-/// the start, not converged.
+/// the start and is not converged.
 [[nodiscard]] BundleFit fit_bundle(std::span<const Eigen::Vector2d> points, std::span<const BoardView> views,
                                    const BoardBundle& start, const BundleConfig& config);
 

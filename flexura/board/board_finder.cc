@@ -141,7 +141,7 @@ BoardObservation find_board(const Image<std::uint8_t>& gray, const BoardTarget& 
   if (!is_found ||
       corners.size() != static_cast<std::size_t>(board.columns) * static_cast<std::size_t>(board.rows) ||
       !std::ranges::all_of(corners, is_inside)) {
-    observation.reason = "no complete board of this size is in the picture";
+    observation.reason = "the picture does not contain a complete board of this size";
     return observation;
   }
   for (const cv::Point2f& corner : corners) observation.pixels.emplace_back(corner.x, corner.y);

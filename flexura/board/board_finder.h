@@ -24,8 +24,8 @@ struct BoardObservation {
 /// Finds a board of at least 3 x 3 points that is entirely in the picture, with OpenCV's calib3d. Corners are
 /// refined to subpixel accuracy (W. Foerstner's saddle point, cornerSubPix) in a window without neighbouring
 /// corners. The first point is chosen so that rows and columns have the same orientation as on the board. On
-/// an unambiguous chessboard, the square inward of the first point is dark. A part of a larger board is not
-/// accepted. Equal pictures give equal results.
+/// an unambiguous chessboard, the square inward of the first point is dark. It does not accept a part of a
+/// larger board. Equal pictures give equal results.
 [[nodiscard]] BoardObservation find_board(const Image<std::uint8_t>& gray, const BoardTarget& board);
 
 }  // namespace flexura

@@ -22,8 +22,8 @@ struct BoardTarget {
 
   /// Returns the points in the board's plane, m, row by row. The first point is (0, 0).
   [[nodiscard]] std::vector<Eigen::Vector2d> points() const;
-  /// Returns whether a picture cannot show which of two opposite corners is the first point. Two cameras may
-  /// then choose different corners.
+  /// Returns whether a picture does not determine which of two opposite corners is the first point. In this
+  /// case, two cameras may choose different corners.
   [[nodiscard]] bool is_ambiguous() const;
 };
 

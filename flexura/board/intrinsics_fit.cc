@@ -78,13 +78,13 @@ class Calibration {
   void check() const {
     for (const BoardView& view : views_) {
       if (view.pixels.size() != sizes_.size())
-        throw std::invalid_argument("a view has another number of cameras");
+        throw std::invalid_argument("a view has a wrong number of cameras");
       for (const auto& pixels : view.pixels)
         if (!pixels.empty() && pixels.size() != points_.size())
-          throw std::invalid_argument("a view has another number of points than the board");
+          throw std::invalid_argument("the number of points in a view differs from that of the board");
     }
     if (config_.distortion < 0 || config_.distortion > 5)
-      throw std::invalid_argument("of five distortion coefficients, 0 to 5 can be estimated");
+      throw std::invalid_argument("the number of estimated distortion coefficients must be 0 to 5");
   }
 
   [[nodiscard]] BundleConfig bundle_config(double least_gain) const {
@@ -106,7 +106,7 @@ class Calibration {
       const CameraAlone& own = alone.back();
       if (own.views.size() < 2) {
         result_.reason = camera_text(camera) +
-                         fmt::format("{} to fit: expected at least two, from different directions",
+                         fmt::format("{} to fit: expected at least two views, from different directions",
                                      own.views.empty() ? "no view of the board" : "one view of the board");
       } else if (!own.fit.is_converged) {
         result_.reason = camera_text(camera) + why_not_converged(own.fit);

@@ -18,7 +18,7 @@ namespace flexura {
 struct IntrinsicsConfig {
   /// Number of estimated distortion coefficients in the order k1, k2, p1, p2, k3; the others are 0.
   int distortion = 5;
-  /// Every Nth view is not fitted but only predicted (N = hold_out); 0: all views are fitted.
+  /// N = hold_out: every Nth view is excluded from the fit and only predicted; 0: all views are fitted.
   int hold_out = 0;
 };
 
@@ -30,17 +30,19 @@ struct CameraFit {
   Eigen::Matrix<double, intrinsics_count, intrinsics_count> covariance;
   double rms = 0;  ///< Root mean square of the distances between observed and computed pixels in the camera's
                    ///< fitted pictures, px.
-  double rms_alone = 0;  ///< Root mean square of these distances if the camera is calibrated alone, px.
-  /// Root mean square of these distances in each view, including held-out views, px; empty for views in which
-  /// the camera did not see the board.
+  /// Root mean square of the distances between observed and computed pixels if the camera is calibrated
+  /// alone, px.
+  double rms_alone = 0;
+  /// Root mean square of the distances between observed and computed pixels in each view, including held-out
+  /// views, px. Missing for views in which the camera did not see the board.
   std::vector<std::optional<double>> view_rms;
-  /// Standard deviation of the image position of a direction, px, in the worst corner of the image. Large if
-  /// no board was near the corners.
+  /// Standard deviation of the image position of a direction, px, in the worst corner of the image. It is
+  /// large if no board was near the corners.
   double corner_sigma = 0;
   /// Indices of undetermined intrinsics. An intrinsic parameter is undetermined if a change by one standard
-  /// deviation moves observed points by more than a hundredth of the image's diagonal. If corner_sigma
-  /// exceeds this hundredth, a parameter that moves the image's corners that far is undetermined, too.
-  /// Observed pixels are assumed to be accurate to a twentieth of a pixel at best.
+  /// deviation moves observed points by more than 1 % of the image's diagonal. If corner_sigma exceeds this
+  /// distance, a parameter that moves the image's corners that far is undetermined too. The error of observed
+  /// pixels is assumed to be at least 0.05 px.
   std::vector<int> undetermined;
 
   /// Returns the standard deviation of an intrinsic parameter, in its unit. `parameter` is the index in the
@@ -59,10 +61,11 @@ struct IntrinsicsFit {
   double rms = 0;    ///< Root mean square of the distances between observed and computed pixels in all fitted
                      ///< pictures, px.
   double noise = 0;  ///< Standard deviation of one coordinate of an observed pixel, px.
-  std::size_t points = 0;              ///< Number of observed pixels that were fitted.
-  std::vector<bool> is_held_out;       ///< Whether the view was held out, for each view.
-  std::optional<double> held_out_rms;  ///< Root mean square of the distances in held-out views, of which only
-                                       ///< the boards' poses are fitted, px.
+  std::size_t points = 0;         ///< Number of observed pixels that were fitted.
+  std::vector<bool> is_held_out;  ///< Whether the view was held out, for each view.
+  /// Root mean square of the distances in held-out views, px. In these views, only the boards' poses are
+  /// fitted.
+  std::optional<double> held_out_rms;
   std::vector<std::optional<Pose>>
       boards;     ///< Pose X_1B of the board relative to the first camera, for each view.
   int steps = 0;  ///< Number of steps of the joint fit.
@@ -72,8 +75,8 @@ struct IntrinsicsFit {
 /// of each camera's images, px. First calibrates each camera alone, by Zhang's closed form (Z. Zhang, 2000)
 /// and least squares. Then fits all cameras together with their relative poses. Each camera needs at least
 /// two views in which the board is not parallel. Each camera except the first also needs a view in which the
-/// first camera saw the board. Throws std::invalid_argument for views with another number of cameras or
-/// points, or unless 0 to 5 distortion coefficients are estimated.
+/// first camera saw the board. Throws std::invalid_argument for views with a wrong number of cameras or
+/// points, and unless 0 to 5 distortion coefficients are estimated.
 [[nodiscard]] IntrinsicsFit fit_intrinsics(std::span<const Eigen::Vector2d> points,
                                            std::span<const BoardView> views,
                                            std::span<const std::array<int, 2>> sizes,

@@ -61,7 +61,7 @@ class ArcsAsPrinted : public ArcsLoop {
     if (circle_->is_verified) {
       loop_.decide(
           i, "circle", circle_->rms, 0, "px",
-          fmt::format("the circle's equation is verified; the test detects a tilt of {:.2f} deg or more",
+          fmt::format("the circle's equation is verified; the test detects a tilt of at least {:.2f} deg",
                       circle_->detectable_tilt / degree));
       loop_.result().notes.push_back(fmt::format(
           "camera {}: the circle's equation is verified. This proves only a tilt below {:.2f} deg, and does "
@@ -78,7 +78,7 @@ class ArcsAsPrinted : public ArcsLoop {
     next.head = turned_towards(next.head, loop_.lens(i), off);
     next = loop_.commandable_stance(i, next);
     loop_.decide(i, "centre", off.norm(), loop_.config().accepted, "px",
-                 "turn until the circle's centre is at its position in the ideal picture");
+                 "turn the camera until the circle's centre is at its position in the ideal picture");
     if (!loop_.stands_there(i, next)) return std::nullopt;
     return fmt::format("the head of camera {} is at its limit, {:.1f} px from the circle's centre",
                        loop_.name(i), off.norm());
@@ -109,7 +109,7 @@ class ArcsAsPrinted : public ArcsLoop {
     next.head.pan += slide.x() / distance, next.head.tilt += slide.y() / distance;
     next = loop_.commandable_stance(i, next);
     loop_.decide(i, "ratio of axes", 1 - ratio, 0, "share",
-                 fmt::format("around the centre by {:.3f} deg", orbit.side * tilt / degree));
+                 fmt::format("move the camera around the centre by {:.3f} deg", orbit.side * tilt / degree));
     if (!loop_.stands_there(i, next)) return std::nullopt;
     return fmt::format(
         "the circle's equation is not verified by camera {}, and the stage is at its limit: the ratio of the "

@@ -65,10 +65,9 @@ class ArcsCorrected : public ArcsLoop {
       if (auto error = settle({0, 1})) return error;
       if (auto error = disagreement()) return error;
     }
-    loop_.result().notes.push_back(
-        fmt::format("the angle between the axes is known within {} deg (standard deviation); residuals are "
-                    "{:.2f} times their noise",
-                    bounded_text(angle_.sigma / degree, 90, 3), reading_->found.rms));
+    loop_.result().notes.push_back(fmt::format(
+        "standard deviation of the angle between the axes: {} deg; residuals are {:.2f} times their noise",
+        bounded_text(angle_.sigma / degree, 90, 3), reading_->found.rms));
     for (std::size_t i = 0; i < 2; ++i) {
       if (!is_centered_[i]) continue;
       const Intrinsics was = loop_.lens(i), is = Camera(found(i)).lens().at(loop_.stance(i).head.zoom);
@@ -85,7 +84,7 @@ class ArcsCorrected : public ArcsLoop {
         observer_->see(i, before(), observed);
         if (observer_->markers() < seen_as_.fewest && observed.seen.reason.empty())
           observed.seen.reason =
-              fmt::format("{} markers are seen, fewer than {}", observer_->markers(), seen_as_.fewest);
+              fmt::format("{} markers are visible, fewer than {}", observer_->markers(), seen_as_.fewest);
         observed.values = {{"markers", static_cast<double>(observed.seen.markers.size())}};
       });
       if (error || observer_->markers() >= seen_as_.fewest) return error;
@@ -136,7 +135,7 @@ class ArcsCorrected : public ArcsLoop {
   [[nodiscard]] Error disagreement() const {
     if (!reading_->is_whole())
       return fmt::format(
-          "{:.0f} of {:.0f} observations are not explained by the estimate: expected a twentieth at most",
+          "the estimate does not explain {:.0f} of {:.0f} observations: expected at most one in twenty",
           reading_->unexplained, reading_->things);
     if (!predicted_) return std::nullopt;
     constexpr double farthest = 6;  // Standard deviations.
@@ -215,21 +214,21 @@ class ArcsCorrected : public ArcsLoop {
     const double off = offset(i), last = std::exchange(last_[i], off);
     const bool is_there = loop_.stands_there(i, desired_[i]), is_far = off > allowed(i);
     if (is_far && (is_there || is_short_[i])) {
-      const auto side = LookLoop::look_from_one_side(model(), {loop_.stance(0), loop_.stance(1)}, "seen");
-      return fmt::format("{}camera {}: at the limit of its commands, {:.4g} px are left",
+      const auto side = LookLoop::look_from_one_side(model(), {loop_.stance(0), loop_.stance(1)}, "observed");
+      return fmt::format("{}camera {}: at the limit of its range, an offset of {:.4g} px remains",
                          side ? *side + "; " : "", loop_.name(i), off);
     }
     std::string what;
     // Small steps that no longer shrink are below what the pictures determine.
     if (off <= loop_.config().accepted || is_there)
-      what = "within the tolerance, or nothing finer can be commanded";
+      what = "within the tolerance, or at the resolution of the commands";
     else if (off > 0.5 * last && !is_far)
-      what = "within the tolerance: the pictures resolve nothing finer";
+      what = "within the tolerance, which is the resolution of the pictures";
     else
       next = desired_[i];
     if (next)
       what = fmt::format(
-          "residuals are {:.2f} times their noise, the angle between the axes is known within {} deg; "
+          "residuals are {:.2f} times their noise; standard deviation of the angle between the axes: {} deg; "
           "pan to {:.5g} rad, tilt to {:.5g} rad, stage to {:.4g}, {:.4g}, {:.4g} m",
           reading_->found.rms, bounded_text(angle_.sigma / degree, 90, 3), next->head.pan, next->head.tilt,
           next->stage.offset.x(), next->stage.offset.y(), next->stage.offset.z());
@@ -264,10 +263,10 @@ class ArcsCorrected : public ArcsLoop {
       const RigStance next = loop_.zoomed(i, longer(i));
       const double times = loop_.camera(i).lens().at(next.head.zoom).fx / loop_.lens(i).fx;
       if (times < LookLoop::least_longer) {
-        loop_.result().notes.push_back(
-            fmt::format("{}: the principal point is assumed to be known within 1 px, because the arm leaves "
-                        "the picture beyond {:.2f} times the focal length: expected {}",
-                        loop_.name(i), std::max(1.0, times), LookLoop::least_longer));
+        loop_.result().notes.push_back(fmt::format(
+            "{}: the principal point is assumed to be known within 1 px. It cannot be measured, because the "
+            "arm leaves the picture beyond {:.2f} times the focal length: expected {}",
+            loop_.name(i), std::max(1.0, times), LookLoop::least_longer));
         continue;
       }
       looking.push_back(i), is_centered_[i] = true;

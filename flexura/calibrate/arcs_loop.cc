@@ -74,17 +74,19 @@ LookLoop::Error ArcsLoop::equalize_zooms() {
       if (off <= accepted)
         end = "within the tolerance";
       else if (loop_.stands_there(i, next))
-        end = "nothing nearer can be commanded";
+        end = "at the resolution of the commands";
       else if (round == rounds)
-        end = fmt::format("stopped after {} observations: correlation hardly resolves a finer zoom", rounds);
+        end = fmt::format(
+            "stopped after {} observations: the correlation hardly resolves smaller changes of the zoom",
+            rounds);
       loop_.decide(i, "zoom", seen.ratio - 1, accepted, "share",
                    end.empty()
                        ? fmt::format("zoom to {:.5g}, for a correlation of {:.3f}", next.head.zoom, seen.peak)
                        : fmt::format("the correlation is {:.3f}: {}", seen.peak, end));
       if (!end.empty() && off > accepted)
         loop_.result().notes.push_back(
-            fmt::format("zoom of camera {}: the last correlation is {:.2g} % off the ideal picture, the "
-                        "tolerance is {:.2g} %: {}",
+            fmt::format("zoom of camera {}: by the last correlation, the size differs by {:.2g} % from the "
+                        "ideal picture, the tolerance is {:.2g} %: {}",
                         loop_.name(i), 100 * off, 100 * accepted, end));
       if (!end.empty()) break;
       if (auto moved = loop_.go(i, next)) return moved;

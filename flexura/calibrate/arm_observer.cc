@@ -113,8 +113,8 @@ class ArmObserver : public RigObserver {
     for (const std::size_t camera : config_.cameras) {
       if (images[camera] > 0 || !reading.found.is_found) continue;
       reading.found.is_found = false;
-      reading.found.reason =
-          fmt::format("no picture of camera {} has identified markers", nominal_.cameras[camera].name);
+      reading.found.reason = fmt::format("no markers were identified in the pictures of camera {}",
+                                         nominal_.cameras[camera].name);
     }
     for (std::size_t i = 0; i < matches.size(); ++i)
       unknown += static_cast<double>(markers_of(rig_pictures_.looks[i].arm.scene)) -

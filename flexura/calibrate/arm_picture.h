@@ -20,29 +20,29 @@ namespace flexura {
 
 /// Known properties of an arm and its pictures.
 struct ArmPictureConfig {
-  std::vector<KnownMarker> markers;  ///< Markers of the arm, base first.
+  std::vector<KnownMarker> markers;  ///< Markers of the arm, ordered from base to tip.
   int white = 255;                   ///< Largest pixel value.
 };
 
-/// The arm in one picture before its markers are identified.
+/// The measured arm in one picture, before its markers are identified.
 struct ArmFigure {
   std::vector<AxisSample> axis;
   std::vector<MarkerObservation> markers;  ///< Markers in order along the centerline.
-  MarkerScene scene;                       ///< The markers and arm ends that can be identified.
+  MarkerScene scene;                       ///< Markers and arm ends that can be identified.
   std::array<int, 2> size = {0, 0};        ///< Size of the picture, px.
   std::string reason;                      ///< Why no arm was found, or "".
 };
 
-/// The arm in one picture with its markers identified.
+/// The measured arm in one picture, with its markers identified.
 struct SeenArm {
   std::vector<SeenMarker> markers;
   std::vector<CurvePoint> points;  ///< Points of the backbone, base to tip, with independent errors.
   std::size_t unknown = 0;         ///< Number of detected markers that were not identified.
-  std::string reason;              ///< Why there are no markers, or "".
+  std::string reason;              ///< Why no markers were identified, or "".
 };
 
 /// Predicts where the markers and ends of an arm appear, for the modelled arm and view. Marker positions are
-/// measured along `marked`: the arm with nominal section lengths, which may differ from the estimated ones.
+/// arc lengths on `marked`: the arm with nominal section lengths, which may differ from those of `arm`.
 [[nodiscard]] MarkerPicture marker_picture(const Arm& arm, const ArmState& state,
                                            const std::vector<KnownMarker>& markers, const View& view,
                                            const Arm& marked);
@@ -58,8 +58,8 @@ struct SeenArm {
 /// Returns the number of markers inside the picture, at least `margin` px from its border.
 [[nodiscard]] std::size_t markers_inside(const MarkerScene& scene, const View& view, double margin);
 
-/// Returns markers and centerline points of a picture whose markers are matched. `lens` corrects for the
-/// apparent shape of a wide tube (vision/backbone_image.h).
+/// Returns markers and centerline points of a picture whose markers are matched. `lens` is needed to correct
+/// the centerline of a wide tube (vision/backbone_image.h).
 [[nodiscard]] SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& lens,
                                  const ArmPictureConfig& config);
 
@@ -69,7 +69,7 @@ class ArmPicture {
   explicit ArmPicture(ArmPictureConfig config) : config_(std::move(config)) {}
 
   [[nodiscard]] ArmFigure look(const Picture& picture);
-  /// Finds the arm and identifies its markers by comparison with the scene expected in this picture.
+  /// Finds the arm, and identifies its markers by comparison with the expected scene.
   [[nodiscard]] SeenArm see(const Picture& picture, const Lens& lens, const MarkerScene& expected);
 
  private:

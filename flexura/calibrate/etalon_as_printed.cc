@@ -143,7 +143,7 @@ class EtalonAsPrinted : public EtalonLoop {
     if (++turned_away_[i] > most)
       return fmt::format(
           "horizontal positioning of camera {} cannot stop: the head turned the outer of two red axes out of "
-          "the picture, but both were in the picture again with the cylinder in the middle",
+          "the picture, but both were visible again with the cylinder in the middle",
           loop_.name(i));
     const auto off = [&](double u) { return std::abs(u - counts_[i].middle); };
     const double outer = off(axes.front()) > off(axes.back()) ? axes.front() : axes.back();
@@ -157,7 +157,7 @@ class EtalonAsPrinted : public EtalonLoop {
     next = loop_.commandable_stance(i, next);
     loop_.decide(
         i, "horizontal positioning", off(outer), 0, "px",
-        fmt::format("two red axes are seen: pan by {:.4f} rad to turn the outer axis out of the picture",
+        fmt::format("two red axes are visible: pan by {:.4f} rad to turn the outer axis out of the picture",
                     turn));
     return loop_.go(i, next);
   }
@@ -173,13 +173,13 @@ class EtalonAsPrinted : public EtalonLoop {
         const Offset tested = offsets(i)[first + 1];
         holds = first == 2 || std::abs(tested.px) <= tested.accepted;
         loop_.decide(i, first == 0 ? "full horizontal calibration" : "full vertical calibration", tested.px,
-                     tested.accepted, "px", holds ? "stops" : "goes to step 1");
+                     tested.accepted, "px", holds ? "stops" : "returns to step 1");
       }
     }
     if (counts_[i].above != 0 || counts_[i].below != 0) return std::nullopt;
     return fmt::format(
         "vertical calibration of camera {} stops, but the cylinder touches the upper and the lower border of "
-        "the picture: its distances from both borders are zero and show no position",
+        "the picture: its distances from both borders are zero and do not depend on the position",
         loop_.name(i));
   }
 
@@ -193,8 +193,8 @@ class EtalonAsPrinted : public EtalonLoop {
       const EtalonCounts& last = counts_[i];
       if (std::min({last.left, last.right, last.above, last.below}) == 0)
         return fmt::format(
-            "all procedures stop, but the cylinder touches the border of camera {}'s picture: only a part of "
-            "the cylinder was counted",
+            "all procedures stop, but the cylinder touches the border of camera {}'s picture: only the "
+            "pixels of a part of the cylinder were counted",
             loop_.name(i));
     }
     loop_.result().zoom_ratio.reset();  // White pixels do not measure magnification.

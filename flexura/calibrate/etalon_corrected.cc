@@ -90,8 +90,9 @@ class EtalonCorrected : public EtalonLoop {
         if (auto error = center(i)) return error;
       if (auto error = null(i, {0, 1, 2, 3})) return error;
       for (const Offset& offset : offsets(i))
-        loop_.decide(i, offset.step, offset.px, loop_.config().accepted, "px",
-                     std::abs(offset.want) <= offset.accepted ? "holds" : "nothing finer can be commanded");
+        loop_.decide(
+            i, offset.step, offset.px, loop_.config().accepted, "px",
+            std::abs(offset.want) <= offset.accepted ? "holds" : "at the resolution of the commands");
       loop_.result().roll[i] = views_[i].roll;
     }
     return std::nullopt;
@@ -131,8 +132,8 @@ class EtalonCorrected : public EtalonLoop {
       times = lens_then.fx / lens.fx;
       if (times < LookLoop::least_longer) {
         loop_.result().notes.push_back(
-            fmt::format("{}: the principal point of the file is used, because no picture with {} times the "
-                        "shortest focal length or more shows the whole cylinder",
+            fmt::format("{}: the principal point of the file is used, because no picture with at least {} "
+                        "times the shortest focal length shows the whole cylinder",
                         loop_.name(i), LookLoop::least_longer));
         return loop_.stands_there(i, wide) ? std::nullopt : loop_.go(i, wide);
       }
@@ -163,8 +164,7 @@ class EtalonCorrected : public EtalonLoop {
     constexpr double visible = 0.01;
     if (std::abs(*loop_.result().zoom_ratio - 1) > visible)
       return fmt::format(
-          "the zoom ranges of the cameras do not allow equal sizes of the cylinder: the ratio stays at "
-          "{:.4f}",
+          "the zoom ranges of the cameras do not allow equal sizes of the cylinder: the ratio remains {:.4f}",
           *loop_.result().zoom_ratio);
     const auto across = [&](std::size_t i) { return views_[i].bearing + views_[i].sight; };
     const auto step = [&](std::size_t i) { return loop_.camera(i).head_axes()[0].resolution; };
@@ -179,7 +179,7 @@ class EtalonCorrected : public EtalonLoop {
       next = loop_.commandable_stance(i, next);
       if (!loop_.stands_there(i, next)) {
         loop_.decide(i, "orthogonal axes", (across(0) - across(1)) / degree, 0, "deg",
-                     "pan by a step, after which the axes are more nearly orthogonal");
+                     "pan by one step, which makes the axes more nearly orthogonal");
         if (auto error = loop_.go(i, next)) return error;
       }
       if (auto error = look(i)) return error;

@@ -13,23 +13,24 @@
 
 namespace flexura {
 
-/// Parts of the calibration cylinder that a picture shows and whose position in space is known.
+/// Parts of the calibration cylinder that are visible in pictures and have a known position in space.
 enum class EtalonPart {
   left_side,  ///< Left end of the silhouette: the line along the cylinder where the line of sight is tangent.
   right_side,  ///< Right end of the silhouette.
-  upper_rim,   ///< Top of the silhouette: the mean of its two points a quarter of the width to both sides of
-               ///< its middle.
-  lower_rim,   ///< Bottom of the silhouette: the mean of its two points a quarter of the width to both sides
-               ///< of its middle.
+  /// Top of the silhouette: mean of two points, a quarter of the width to the left and right of the middle.
+  upper_rim,
+  /// Bottom of the silhouette: mean of two points, a quarter of the width to the left and right of the
+  /// middle.
+  lower_rim,
   red_line,
 };
 
-/// The half of a rim that bounds the silhouette. It is the nearer half as long as the camera does not see the
-/// end face, and the farther half otherwise. It changes when a camera passes the height of the rim. The
-/// derivative of the silhouette with respect to the camera then jumps, because the two halves have different
+/// The half of a rim that bounds the silhouette. It is the nearer half if the end face is invisible, and the
+/// farther half if the end face is visible. The half changes when a camera passes the height of the rim. Then
+/// the derivative of the silhouette with respect to the camera jumps, because the two halves have different
 /// distances.
 enum class RimHalf : std::uint8_t {
-  seen,  ///< The half that bounds the silhouette from the camera's position.
+  seen,  ///< The half that bounds the silhouette, seen from the camera's position.
   near,
   far,
 };
@@ -37,13 +38,15 @@ enum class RimHalf : std::uint8_t {
 /// A picture point on the image of a part of the cylinder. Its position along this image is unknown.
 struct EtalonPoint {
   EtalonPart part = EtalonPart::left_side;
-  std::size_t number = 0;  ///< Number of a red line: line 0 is towards E's +Z, line 1 towards +X, and so on.
+  /// Number of the red line: line 0 is towards +Z of the cylinder's frame E, line 1 towards +X, line 2
+  /// towards -Z, line 3 towards -X.
+  std::size_t number = 0;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  double sigma = 0;              ///< Standard deviation across the part's image, px.
+  double sigma = 0;              ///< Standard deviation perpendicular to the part's image, px.
   RimHalf half = RimHalf::seen;  ///< For a rim: the half with which the point is compared.
 };
 
-/// A line in W whose image is the image of a part for one camera.
+/// A line in W whose image, for one camera, coincides with the image of a part of the cylinder.
 struct EtalonLine {
   Eigen::Vector3d point, direction;  ///< A point of the line, m, and its unit direction, in W.
 };
@@ -54,33 +57,34 @@ class EtalonFigure {
   /// `etalon`: position and size of the cylinder.
   explicit EtalonFigure(const EtalonConfig& etalon);
 
-  /// Returns the line whose image a camera at p_WC sees as this part. The lines of sides and rims move along
-  /// the surface with the camera. The line of sight is tangent to the surface there, so to first order this
-  /// motion changes nothing in the picture. The line may therefore be treated as fixed. Empty for a camera
-  /// within the cylinder's radius. `half` selects the half of a rim and is ignored for other parts.
+  /// Returns the line whose image coincides with that of this part, for a camera at p_WC. The lines of sides
+  /// and rims move along the surface if the camera moves. The line of sight is tangent to the surface there,
+  /// so to first order this motion does not change the picture. The line may therefore be treated as fixed.
+  /// Returns std::nullopt for a camera within the cylinder's radius. `half` selects the half of a rim and is
+  /// ignored for other parts.
   [[nodiscard]] std::optional<EtalonLine> line(EtalonPart part, std::size_t number,
                                                const Eigen::Vector3d& p_WC,
                                                RimHalf half = RimHalf::seen) const;
-  /// Returns the half of a rim, near or far, that bounds the silhouette for a camera at p_WC; `seen` for
-  /// other parts.
+  /// Returns the half of a rim (near or far) that bounds the silhouette for a camera at p_WC. Returns `seen`
+  /// for other parts.
   [[nodiscard]] RimHalf half_seen(EtalonPart part, const Eigen::Vector3d& p_WC) const;
   /// Returns the point of the part's line (for a rim: of its tangent) nearest to the ray through the pixel.
-  /// Empty if there is no line, or if the lens has no ray for the pixel.
+  /// Returns std::nullopt if there is no line, or if the lens has no ray for the pixel.
   [[nodiscard]] std::optional<Eigen::Vector3d> nearest(const EtalonPoint& seen, const View& view) const;
 
-  /// Predicts the points of a picture, with sigma 0. They are two of each side, one of each rim, and two of
-  /// each red line that faces the camera within 60 degrees. Empty unless the whole cylinder is visible, at
-  /// least `margin` px from the border.
+  /// Predicts the points of a picture, with sigma 0: two on each side, one on each rim, and two on each red
+  /// line that faces the camera within 60 degrees. Returns std::nullopt unless the whole cylinder is visible,
+  /// at least `margin` px from the border.
   [[nodiscard]] std::optional<std::vector<EtalonPoint>> expected(const View& view, double margin) const;
   /// Number of points of each rim in an outline.
   static constexpr std::size_t rim_points = 32;
   /// Returns the pixels of rim_points points on each of the two rims, evenly spaced, starting at the camera's
-  /// side. They bound the visible cylinder to within 0.005 of a rim's width. Empty unless the whole cylinder
-  /// is visible, at least `margin` px from the border.
+  /// side. Their polygon approximates the outline of the cylinder within 0.005 of a rim's width. Returns
+  /// std::nullopt unless the whole cylinder is visible, at least `margin` px from the border.
   [[nodiscard]] std::optional<std::array<Eigen::Vector2d, 2 * rim_points>> outline(const View& view,
                                                                                    double margin) const;
-  /// Returns the angle of a red line around the cylinder's axis, counted to the right from the camera's
-  /// direction, rad.
+  /// Returns the angle of a red line around the cylinder's axis, rad. It is measured to the right from the
+  /// direction to the camera.
   [[nodiscard]] double bearing(std::size_t number, const Eigen::Vector3d& p_WC) const;
 
   /// Returns the midpoint of the cylinder's axis, in W, m.

@@ -31,7 +31,7 @@ LookLoop::Error EtalonLoop::run() {
   if (auto error = loop_.begin()) return error;
   for (std::size_t i = 0; i < 2; ++i)
     if (auto error = loop_.begin_zoomed(i, zoom_ends(loop_.camera(i))[0], "zoom to x1",
-                                        "the shortest focal length, to see all of the cylinder"))
+                                        "the shortest focal length, to see the whole cylinder"))
       return error;
   for (std::size_t i = 0; i < 2; ++i)
     if (auto error = align(i)) return error;
@@ -78,8 +78,8 @@ LookLoop::Error EtalonLoop::step(std::size_t i, const Offset& offset, OffsetStep
   if (!is_printed_) {
     if (holds) return std::nullopt;
     if (falls_short(loop_.camera(i), asked, next))
-      return fmt::format("{} of camera {}: at the limit of its commands, {:.4g} px are left", offset.step,
-                         loop_.name(i), std::abs(offset.px));
+      return fmt::format("{} of camera {}: at the limit of its range, an offset of {:.4g} px remains",
+                         offset.step, loop_.name(i), std::abs(offset.px));
     if (stays) return std::nullopt;  // Nothing finer can be commanded.
   }
   const std::string what = is_printed_ ? "a step"
@@ -88,8 +88,8 @@ LookLoop::Error EtalonLoop::step(std::size_t i, const Offset& offset, OffsetStep
   loop_.decide(i, offset.step, offset.px, loop_.config().accepted, "px", holds ? "holds" : what);
   if (holds) return std::nullopt;
   if (stays)
-    return fmt::format("{} of camera {}: no further step can be commanded, {:.3g} px are left", offset.step,
-                       loop_.name(i), std::abs(offset.px));
+    return fmt::format("{} of camera {}: no further step can be commanded, an offset of {:.3g} px remains",
+                       offset.step, loop_.name(i), std::abs(offset.px));
   steps = tried, is_moved = true;
   return loop_.go(i, next);
 }
@@ -122,7 +122,7 @@ LookLoop::Error EtalonLoop::zoom() {
       stance = loop_.zoomed(i, is_printed_ ? 1 + loop_.config().zoom_step : larger);
       if (!loop_.stands_there(i, stance)) next = i;
     }
-    std::string what = "both show the cylinder in equal size, or nothing nearer can be commanded";
+    std::string what = "both show the cylinder in equal size, up to the resolution of the commands";
     if (is_printed_)
       what = holds ? "stops" : fmt::format("zoom in with {}", loop_.name(chosen));
     else if (next)

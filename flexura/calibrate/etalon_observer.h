@@ -9,19 +9,19 @@
 
 namespace flexura {
 
-/// Returns the cylinder points of an observation: two of each side and of each identifiable red line, and one
-/// of each rim. The direction of `view` around the cylinder must be known within 40 degrees. The camera may
-/// be upright or upside down.
+/// Returns the cylinder points of an observation: two on each side, two on each identifiable red line, and
+/// one on each rim. The direction of `view` around the cylinder must be correct within 40 degrees. The camera
+/// may be upright or upside down.
 [[nodiscard]] std::vector<EtalonPoint> etalon_points(const EtalonObservation& seen,
                                                      const EtalonFigure& etalon, const View& view);
 
 /// Returns the observation as a SeenArm, for the log and for sessions. Each point of a red line becomes a
-/// marker, placed by its height; the four corners of the silhouette become points.
+/// marker, whose position is the point's height. The four corners of the silhouette become points.
 [[nodiscard]] SeenArm drawn_etalon(const EtalonObservation& seen, const EtalonConfig& etalon,
                                    const View& view);
 
 /// Returns the observer for a session with the configured calibration cylinder. It reports observations as
-/// drawn_etalon() returns them. All arguments must outlive the observer.
+/// SeenArm (drawn_etalon). All arguments must outlive the observer.
 [[nodiscard]] std::unique_ptr<RigObserver> etalon_observer(const RigModel& nominal, const RigPrior& prior,
                                                            const RigSessionConfig& config);
 

@@ -92,11 +92,11 @@ EtalonView view_etalon(const Image<std::uint8_t>& picture, const Intrinsics& int
   } else if (seen.touches_border) {
     view.reason = "the picture's border cuts the cylinder";
   } else if (!seen.upper_edge || !seen.lower_edge) {
-    view.reason = "the cylinder's ends are not seen";
+    view.reason = "the cylinder's ends are not visible";
   } else if (seen.lines.empty()) {
     view.reason = picture.channels() == 3
-                      ? "no red line is seen on the cylinder"
-                      : "no red line is seen on the cylinder: gray pictures hardly show red lines";
+                      ? "no red line is visible on the cylinder"
+                      : "no red line is visible on the cylinder: gray pictures hardly show red lines";
   }
   if (!view.reason.empty()) return view;
   const double middle = seen.middle(seen.middle_row);

@@ -11,27 +11,30 @@
 
 namespace flexura {
 
-/// Pose of a camera relative to the calibration cylinder, from one picture (docs/calibration-paper.md, "What
-/// a picture of the cylinder shows"). Angles are in rad, lengths in the unit of the radius.
+/// Pose of a camera relative to the calibration cylinder, measured in one picture (docs/calibration-paper.md,
+/// "What a picture of the cylinder shows"). Angles are in rad, lengths in the unit of the radius.
 struct EtalonView {
   std::string
-      reason;  ///< Why the following members are not known, except perhaps `centroid`; "" if all are known.
+      /// Why the following members are unknown, or "" if they are known. `centroid` and `is_too_large` may be
+      /// known in any case.
+      reason;
   std::optional<Eigen::Vector2d> centroid;  ///< Centroid of the visible part of the dark figure, px.
   bool is_too_large = false;  ///< Whether the dark figure touches opposite borders of the picture.
   EtalonObservation observation;
 
-  double middle = 0;   ///< Middle of the silhouette, right of the principal point, px.
-  double line = 0;     ///< Nearest red line, right of the silhouette's middle, px.
-  double height = 0;   ///< Middle of the silhouette, below the principal point, px.
-  double taper = 0;    ///< Upper width minus lower width, px.
-  double width = 0;    ///< Width in the middle, px.
-  double sight = 0;    ///< Angle of the optical axis to the left of the line of sight to the cylinder's axis.
-  double bearing = 0;  ///< Angle of the camera's direction around the cylinder, to the right of the red line.
-  double drop = 0;     ///< Angle of the line of sight below the optical axis.
-  double climb = 0;    ///< Height of the camera above the level of the cylinder's middle, as an angle.
+  double middle = 0;  ///< Distance of the silhouette's middle from the principal point, to the right, px.
+  double line = 0;    ///< Distance of the nearest red line from the silhouette's middle, to the right, px.
+  double height = 0;  ///< Distance of the silhouette's middle from the principal point, downwards, px.
+  double taper = 0;   ///< Width at the top minus width at the bottom of the silhouette, px.
+  double width = 0;   ///< Width of the silhouette in its middle, px.
+  double sight = 0;   ///< Angle of the optical axis to the left of the line of sight to the cylinder's axis.
+  /// Angle around the cylinder from the red line to the camera's direction, to the right.
+  double bearing = 0;
+  double drop = 0;           ///< Angle of the line of sight below the optical axis.
+  double climb = 0;          ///< Elevation of the camera above the level of the cylinder's middle.
   double distance = 0;       ///< Distance of the camera from the cylinder's axis.
   double magnification = 0;  ///< Focal length divided by the distance.
-  double roll = 0;           ///< Roll of the camera, clockwise seen from behind it.
+  double roll = 0;           ///< Roll of the camera, clockwise seen from behind the camera.
   double bearing_by_px = 0;  ///< Derivative d bearing / d line, rad/px.
   double climb_by_px = 0;    ///< Derivative d climb / d taper, rad/px.
 };
@@ -40,7 +43,7 @@ struct EtalonView {
 [[nodiscard]] std::optional<Eigen::Vector2d> dark_centroid(const Image<std::uint8_t>& picture);
 
 /// Measures the image of the calibration cylinder in a picture and computes the camera's pose relative to it.
-/// `radius` is that of the cylinder.
+/// `radius`: radius of the cylinder.
 [[nodiscard]] EtalonView view_etalon(const Image<std::uint8_t>& picture, const Intrinsics& intrinsics,
                                      double radius);
 

@@ -24,7 +24,7 @@ LookLoop::LookLoop(const RigPorts& ports, const RigModel& nominal, const LoopCon
 LookLoop::Error LookLoop::begin() {
   auto error = excursion_.begin();
   result_.start = excursion_.start();
-  return error ? error : look_from_one_side(nominal_, excursion_.start(), "believed");
+  return error ? error : look_from_one_side(nominal_, excursion_.start(), "assumed");
 }
 
 LookLoop::Error LookLoop::look_from_one_side(const RigModel& rig, const std::array<RigStance, 2>& stances,
@@ -33,14 +33,15 @@ LookLoop::Error LookLoop::look_from_one_side(const RigModel& rig, const std::arr
   constexpr double farthest = std::numbers::pi / 4;
   if (std::abs(beyond) <= farthest) return std::nullopt;
   return fmt::format(
-      "both cameras look from {}: their axes are {} to be {:.1f} deg apart, expected 45 deg to 135 deg",
+      "both cameras look from {}: the angle between their axes is {} to be {:.1f} deg, expected 45 deg to "
+      "135 deg",
       beyond < 0 ? "one side" : "opposite sides", how, 90 + beyond / degree);
 }
 
 LookLoop::Error LookLoop::look(std::size_t i, const Measure& measure) {
   if (watcher_.is_cancelled()) return "cancelled";
   if (result_.pictures[i] >= config_.images)
-    return fmt::format("the limit of {} pictures of camera {} is reached, during {}", config_.images, name(i),
+    return fmt::format("the limit of {} pictures of camera {} is reached during {}", config_.images, name(i),
                        result_.steps.empty() ? "the first step" : result_.steps.back().step);
   auto taken = excursion_.picture(i, result_.pictures[i] + 1);
   if (const auto* why = std::get_if<std::string>(&taken)) return *why;
@@ -97,7 +98,7 @@ LookLoop::Error LookLoop::turn_towards(std::size_t i, const char* what,
   next.head = turned_towards(next.head, lens, off);
   next = commandable_stance(i, next);
   if (off.norm() < near || stands_there(i, next)) return fmt::format(fmt::runtime(in_vain), name(i), reason);
-  decide(i, "into view", off.norm(), 0, "px", "turn towards what is seen: " + reason);
+  decide(i, "into view", off.norm(), 0, "px", "turn towards the visible part: " + reason);
   return go(i, next);
 }
 

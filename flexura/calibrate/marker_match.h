@@ -11,8 +11,8 @@ namespace flexura {
 
 /// A marker with a known position on the arm.
 struct KnownMarker {
-  double s = 0;                       ///< Position of the marker's middle, m along the unstretched arm.
-  Eigen::Vector3d color = {1, 1, 1};  ///< Red, green, blue; only their ratios matter.
+  double s = 0;                       ///< Arc length of the marker's middle on the unstretched arm, m.
+  Eigen::Vector3d color = {1, 1, 1};  ///< Red, green and blue; only their ratios matter.
 };
 
 /// Features of an arm in a picture, expected or seen: the markers in order along the arm, and the two ends.
@@ -25,11 +25,12 @@ struct MarkerScene {
   std::array<std::optional<Eigen::Vector2d>, 2> ends;  ///< Base and tip, px; empty if not visible.
 };
 
-/// Identities of the seen markers.
+/// Identification of seen markers.
 struct MarkerMatch {
-  std::vector<std::optional<std::size_t>> markers;  ///< Index of each seen marker; empty: a false detection.
-  bool is_reversed = false;                         ///< Whether the seen markers run from tip to base.
-  std::size_t count = 0;                            ///< Number of identified markers.
+  /// Index of the expected marker for each seen marker; empty: false detection.
+  std::vector<std::optional<std::size_t>> markers;
+  bool is_reversed = false;  ///< Whether the seen markers are ordered from tip to base.
+  std::size_t count = 0;     ///< Number of identified markers.
 
   bool operator==(const MarkerMatch&) const = default;
 };
@@ -42,12 +43,13 @@ struct MatchPrior {
 };
 
 /// Identifies markers by their pattern. The expected picture is shifted, rotated (up to 45 degrees) and
-/// scaled (by 0.5 to 2). The best match has most seen features near an expected feature of their kind. Ends
-/// and markers are of different kinds, and so are markers of different colours. The score of a match
-/// decreases by 1 for each seen feature that is not expected. It decreases by 1/2 for each expected feature
-/// inside an image of `size` px that is not seen. It decreases by half the squared similarity in standard
-/// deviations of `match_prior`. This prevents a match of equal markers that is shifted by one marker. Of
-/// matches with equal scores the one with the smaller distances is taken, then the one found first.
+/// scaled (by 0.5 to 2). The score of a match is the number of seen features that are near an expected
+/// feature of equal kind. Ends are one kind of features, and each marker colour is another kind. Each seen
+/// feature that is not expected reduces the score by 1. Each expected feature that is not seen, but should be
+/// inside an image of `size` px, reduces it by 1/2. It is also reduced by half the squared size of the
+/// similarity in standard deviations of `match_prior`. This prevents a match of equal markers that is shifted
+/// by one marker. Returns the match with the best score. For equal scores, returns the one with smaller
+/// distances, and for equal distances the first one.
 [[nodiscard]] MarkerMatch match_markers(const MarkerScene& expected, const MarkerScene& seen,
                                         const std::array<int, 2>& size, const MatchPrior& match_prior = {});
 

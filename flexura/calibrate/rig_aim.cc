@@ -201,8 +201,8 @@ class Seeker {
     constexpr double visible = 1e-3;
     if (std::abs(cosine) > visible)
       result.notes.push_back(
-          fmt::format("the lines of sight are {:.4f} rad off 90 degrees at the limits of the stages: the "
-                      "axes pass beside the target",
+          fmt::format("at the limits of the stages, the angle between the lines of sight differs by {:.4f} "
+                      "rad from 90 degrees: the axes miss the target",
                       std::abs(std::asin(std::clamp(cosine, -1.0, 1.0)))));
   }
 

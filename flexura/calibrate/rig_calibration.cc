@@ -143,14 +143,12 @@ void judge(const RigProblem& problem, const RigDescent& descent, const RigCalibr
   if (!(all > 0)) {
     result.reason = "there are no observations";
   } else if (!std::isfinite(descent.cost)) {
-    result.reason = "the cameras cannot see any of the observations from their initially assumed poses";
+    result.reason = "from the initially assumed poses, no camera could see the observed points";
   } else if (!(outlier_count <= max_outlier_share * all)) {
-    result.reason =
-        fmt::format("{:.0f} % of the observations are not explained by any rig near the initial guess",
-                    100 * outlier_count / all);
+    result.reason = fmt::format("no rig near the initial guess explains {:.0f} % of the observations",
+                                100 * outlier_count / all);
   } else if (!(result.rms <= config.most_rms)) {
-    result.reason = fmt::format(
-        "the residuals of the observations are {:.1f} times larger than their noise explains", result.rms);
+    result.reason = fmt::format("the residuals of the observations are {:.1f} times their noise", result.rms);
   } else if (!descent.is_settled) {
     result.reason = fmt::format("the fit did not converge in {} iterations", result.iterations);
   }

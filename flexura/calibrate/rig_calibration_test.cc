@@ -250,7 +250,7 @@ TEST(RigObservability, SaysWhatThePicturesDoNotTell) {
     return *found;
   };
   EXPECT_TRUE(find("front: focal length").is_determined);
-  EXPECT_TRUE(find("side: mount's turn, y").is_determined);
+  EXPECT_TRUE(find("side: mount's rotation, y").is_determined);
   // Along the tilt axis, shifts of pupil and axis are indistinguishable.
   EXPECT_FALSE(find("front: pupil, x").is_determined);
   EXPECT_FALSE(find("front: tilt axis, x").is_determined);

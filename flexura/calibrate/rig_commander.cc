@@ -100,8 +100,10 @@ RigCommander::Error RigCommander::arm_elsewhere() const {
   for (std::size_t i = 0; i < bends.size(); ++i) {
     const double off = (bends[i] - sent_arm_->bends[i]).norm();
     if (off > patience_.bend)
-      return fmt::format("the arm does not follow: section {} reads {:.3g} rad from its commanded bend",
-                         i + 1, off);
+      return fmt::format(
+          "the arm does not follow: the measured bend of section {} differs by {:.3g} rad from the commanded "
+          "bend",
+          i + 1, off);
   }
   return std::nullopt;
 }
@@ -122,8 +124,10 @@ RigCommander::Error RigCommander::camera_elsewhere(std::size_t camera) const {
     const AxisConfig axis = i < 3 ? optics.head_axes()[i] : optics.stage_axes()[i - 3];
     const double to = places(sent)[i], is = places(reads)[i];
     if (!stands(axis, to, is))
-      return fmt::format("the {} of camera {} does not follow: {} was commanded to {:.6g} and reads {:.6g}",
-                         i < 3 ? "head" : "stage", name(camera), names[i], commandable(axis, to), is);
+      return fmt::format(
+          "the {} of camera {} does not follow: {} was commanded to {:.6g}, but its measured position is "
+          "{:.6g}",
+          i < 3 ? "head" : "stage", name(camera), names[i], commandable(axis, to), is);
   }
   return std::nullopt;
 }

@@ -12,23 +12,23 @@
 
 namespace flexura {
 
-/// Time limits and tolerances for moves and frames.
+/// Time limits and tolerances for motions and frames.
 struct RigPatience {
   double settle = 20;  ///< Time limit for motions to end, s.
   double frame = 3;    ///< Time limit for a frame, s.
-  double pause = 0;    ///< Time to wait after each motion of the arm, until it stops swinging, s.
+  double pause = 0;    ///< Time to wait after each motion of the arm, until its oscillation has decayed, s.
   double poll = 0.02;  ///< Interval between checks for motion, s.
   /// Largest deviation between measured and commanded bend of a section, rad.
   double bend = 0.02;
 };
 
-/// Commander of a rig: moves the rig through its ports, waits for rest, checks that commands were executed,
-/// and takes frames at rest. An error is returned as a sentence.
+/// Commander of a rig. It moves the rig through its ports, waits until nothing moves, checks that commands
+/// were executed, and takes frames at rest. It returns errors as sentences.
 class RigCommander {
  public:
   using Error = std::optional<std::string>;
 
-  /// `nominal` gives the ranges and resolutions of heads and stages; it must have the cameras of the ports.
+  /// `nominal` has the ranges and resolutions of heads and stages. It must have the cameras of the ports.
   RigCommander(const RigPorts& ports, const RigModel& nominal, const RigPatience& patience);
 
   /// Returns the present position of the arm, or an error.
@@ -39,12 +39,12 @@ class RigCommander {
   /// Returns an error if the port of a camera lacks a head or stage that the model has.
   [[nodiscard]] Error must_move(std::size_t camera) const;
 
-  /// Commands the arm to a state within `duration` s, without waiting for the execution.
+  /// Commands the arm to reach a state in `duration` s. Does not wait for the execution.
   [[nodiscard]] Error bend(const ArmState& state, double duration);
-  /// Commands a camera to a stance, without waiting for the execution.
+  /// Commands a camera to a stance. Does not wait for the execution.
   [[nodiscard]] Error go(const RigStance& stance);
-  /// Waits until nothing moves, and RigPatience::pause longer if the arm moved. Returns an error if anything
-  /// is not at its commanded position or does not come to rest.
+  /// Waits until nothing moves. If the arm moved, waits for RigPatience::pause afterwards. Returns an error
+  /// if a device does not come to rest or is not at its commanded position.
   [[nodiscard]] Error settle();
 
   /// Returns the next frame whose exposure begins at `time` (s) or later, or an error.

@@ -12,18 +12,21 @@ struct RigDescentConfig {
   std::vector<bool> is_free;  ///< Whether each variable of x is free; empty: all are free.
   int most_iterations = 60;
   double bound = 3;  ///< Size of a residual, in standard deviations, beyond which its cost is linear.
-  bool does_bound_rise = true;  ///< Whether the bound rises to the size of most residuals if that is larger.
+  /// Whether the bound is raised to the size of most residuals if they are larger.
+  bool does_bound_rise = true;
 };
 
 struct RigDescent {
   Eigen::VectorXd x;
-  double cost = 0;  ///< Cost with the configured bound; infinite if the rig at the start would not show the
-                    ///< observations.
-  bool is_settled = false;  ///< Whether no step lowers the cost noticeably.
+  /// Cost with the configured bound; infinite if the observed points would be invisible for the rig at the
+  /// start.
+  double cost = 0;
+  bool is_settled = false;  ///< Whether the descent converged: no step lowers the cost noticeably.
   int iterations = 0;
 };
 
-/// Minimises by the Levenberg-Marquardt method from `start`. Leaves `problem` linearised at the result.
+/// Minimises the cost by the Levenberg-Marquardt method, starting at `start`. Afterwards `problem` is
+/// linearised at the result.
 [[nodiscard]] RigDescent descend(RigProblem& problem, const Eigen::VectorXd& start,
                                  const RigDescentConfig& config);
 

@@ -10,30 +10,31 @@
 
 namespace flexura {
 
-/// Motion of two cameras and an arm during a session. This class sends commands and reports them to the
-/// session's watcher. It stores the initial and present positions, takes pictures, and returns everything to
-/// the start. Cameras have the numbers 0 and 1.
+/// Moves two cameras and an arm during a session. Sends commands and reports them to the session's watcher.
+/// Stores the initial and present positions, takes pictures, and returns everything to the start. Cameras
+/// have the numbers 0 and 1.
 class RigExcursion {
  public:
   using Error = RigCommander::Error;
 
   /// `move_duration`: duration of a move of the arm from one shape to the next, s. Throws
-  /// std::invalid_argument if the ports are for other cameras than the model's, or if both cameras are the
+  /// std::invalid_argument if the ports do not have the cameras of the model, or if both cameras are the
   /// same.
   RigExcursion(const RigPorts& ports, const RigModel& nominal, const std::array<std::size_t, 2>& cameras,
                const RigPatience& patience, double move_duration, RigSessionWatcher& watcher);
 
-  /// Waits for rest and stores all positions.
+  /// Waits until nothing moves, and stores all positions.
   [[nodiscard]] Error begin();
-  /// Moves the arm to a pose via its initial shape, so that all paths are known before anything moves.
+  /// Moves the arm to a pose via its initial shape. All possible paths are therefore known before the
+  /// session.
   [[nodiscard]] Error show(const ArmState& pose);
   /// Sends a command to a camera. settle() waits for its execution.
   [[nodiscard]] Error send(std::size_t i, const RigStance& stance);
   [[nodiscard]] Error settle() { return commander_.settle(); }
-  /// Returns everything to the start, as far as possible. Returns a message about the outcome.
+  /// Moves everything back to the start, as far as possible. Returns a message about the outcome.
   [[nodiscard]] std::string retreat();
 
-  /// Returns a new picture with the camera's position, not measured yet, or an error.
+  /// Returns a new picture, which is not measured yet, with the camera's position, or an error.
   [[nodiscard]] std::variant<CameraObservation, std::string> picture(std::size_t i, std::size_t look) const;
   [[nodiscard]] std::variant<ArmState, std::string> arm() const { return commander_.arm(); }
   [[nodiscard]] double now() const { return commander_.now(); }

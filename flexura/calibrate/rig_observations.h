@@ -18,15 +18,15 @@ struct RigImage {
   std::vector<CurvePoint> points = {};   ///< Points of the backbone, base to tip.
   std::vector<EtalonPoint> etalon = {};  ///< Points of the cylinder's borders and red lines.
 
-  /// Returns the number of observations.
+  /// Returns the number of markers and points.
   [[nodiscard]] std::size_t things() const { return markers.size() + points.size() + etalon.size(); }
 };
 
-/// All observations. Pictures taken without moving the camera share a stance and its error. Pictures taken
-/// without moving the arm share a pose and its error.
+/// All observations. Pictures between which the camera did not move share a stance and its error. Pictures
+/// between which the arm did not move share a pose and its error.
 struct RigObservations {
-  std::vector<ArmState> poses;     ///< Arm poses as commanded.
-  std::vector<RigStance> stances;  ///< Camera stances as read.
+  std::vector<ArmState> poses;     ///< Commanded arm poses.
+  std::vector<RigStance> stances;  ///< Measured camera stances.
   std::vector<RigImage> images;
   std::optional<EtalonConfig> etalon = {};  ///< Known position of the cylinder, if there is one.
 };

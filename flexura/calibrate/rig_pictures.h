@@ -15,7 +15,7 @@ namespace flexura {
 [[nodiscard]] std::size_t markers_of(const MarkerScene& scene);
 
 /// The pictures of a session. Their markers are identified again whenever the rig estimate improves, because
-/// a wrong rig leads to wrong identities.
+/// a wrong estimate leads to wrong identities.
 class RigPictures {
  public:
   struct Look {
@@ -23,26 +23,28 @@ class RigPictures {
     ArmFigure arm;
   };
 
-  /// `marked`: the arm along which marker positions are measured. `cameras`: indices in the rig of the
+  /// `marked`: the arm on which the markers' arc lengths are measured. `cameras`: indices in the rig of the
   /// cameras that take the pictures.
   RigPictures(const Arm& marked, ArmPictureConfig config, const std::array<std::size_t, 2>& cameras)
       : marked_(marked), config_(std::move(config)), cameras_(cameras) {}
 
-  std::vector<ArmState> poses;     ///< Arm poses as commanded.
-  std::vector<RigStance> stances;  ///< Camera stances as read.
+  std::vector<ArmState> poses;     ///< Commanded arm poses.
+  std::vector<RigStance> stances;  ///< Measured camera stances.
   std::vector<Look> looks;
 
-  /// Identifies the markers in each look. The true rig is `model` with errors of the prior `pointing_prior`,
-  /// which follow from all looks of a camera together. `rank` selects one of the likely errors of each
-  /// camera, 0 for the best. Looks of a camera with fewer likely errors get no identities.
+  /// Identifies the markers in each picture. `pointing_prior`: prior of the pointing errors of `model`. The
+  /// error of a camera is estimated from all its pictures together. `rank` selects one of the likely errors
+  /// of each camera; 0 is the best. In pictures of a camera with fewer likely errors, no markers are
+  /// identified.
   [[nodiscard]] std::vector<MarkerMatch> recognise(const RigModel& model, const PointingPrior& pointing_prior,
                                                    const std::array<std::size_t, 2>& rank = {0, 0}) const;
-  /// Identifies the markers of the last look only, with the likeliest error from all looks of its camera.
+  /// Identifies only the markers of the last picture, with the most likely error from all pictures of its
+  /// camera.
   [[nodiscard]] MarkerMatch recognise_last(const RigModel& model, const PointingPrior& pointing_prior) const;
-  /// Returns the observations of the looks with at least `fewest` identified markers.
+  /// Returns the observations of the pictures with at least `fewest` identified markers.
   [[nodiscard]] RigObservations observations(const RigModel& model, const std::vector<MarkerMatch>& matches,
                                              std::size_t fewest) const;
-  /// Returns the observations of one look.
+  /// Returns the observations of one picture.
   [[nodiscard]] SeenArm seen(const RigModel& model, std::size_t look, const MarkerMatch& match) const;
 
  private:

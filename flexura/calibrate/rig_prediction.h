@@ -5,16 +5,17 @@
 
 namespace flexura {
 
-/// Agreement of a picture with a rig that was estimated without it.
+/// Agreement of a picture with a rig estimate that does not use this picture.
 struct RigPrediction {
   double px = 0;  ///< Prediction error of the observations, root mean square, px.
-  /// Prediction error in units of the combined uncertainty of rig, head, arm and picture.
+  /// Prediction error divided by the combined standard deviation of rig, head, arm and picture.
   double sigmas = 0;
 };
 
-/// Compares a picture with its prediction by the rig estimated from `problem`. `stance` and `pose` were read
-/// when the picture was taken. `image` refers to stance 0 and pose 0. `least`: smallest standard deviation of
-/// a predicted position, px. Infinite if the estimated rig would not show the observations.
+/// Compares a picture with its prediction by the rig estimated from `problem`. `stance` and `pose` were
+/// measured when the picture was taken. `image` must refer to stance 0 and pose 0. `least`: lower limit of
+/// the standard deviation of a predicted position, px. The result is infinite if the observed points would be
+/// invisible for the estimated rig.
 [[nodiscard]] RigPrediction predict_image(const RigProblem& problem, const RigCalibration& found,
                                           const RigStance& stance, const ArmState& pose,
                                           const RigImage& image, double least);

@@ -10,12 +10,12 @@
 
 namespace flexura {
 
-/// Prior standard deviations of the errors of a camera's description. With 0 a variable is fixed, with
-/// infinity it has no prior.
+/// Prior standard deviations of the errors of a camera's model. A variable with 0 is fixed. A variable with
+/// infinity has no prior.
 struct CameraPrior {
   double position = 0.7;          ///< Mount position in each direction, m.
   double rotation = 10 * degree;  ///< Mount rotation about each axis, rad.
-  double pan_zero = 0;  ///< Pan zero, rad; equivalent to a rotated mount as long as the stage does not move.
+  double pan_zero = 0;  ///< Pan zero, rad. Without stage motion, it is equivalent to a rotation of the mount.
   double tilt_zero = 0.035;     ///< Tilt zero, rad.
   double tilt_axis = 0.003;     ///< Position of the tilt axis in each direction, m.
   double pupil = 0.003;         ///< Position of the pupil in each direction, m.
@@ -25,34 +25,36 @@ struct CameraPrior {
   double principal_point = 10;  ///< Principal point in each direction, px.
   std::array<double, 5> distortion = {0.02, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3.
   double zoom_row = 0.01;  ///< Relative error of the focal length of each row of a zoom table.
-  /// Error of an axis position of head or stage, in steps of the axis's resolution. The default is that of an
-  /// error evenly distributed within half a step. 0: positions are exact.
+  /// Error of an axis position of head or stage, in steps of the axis's resolution. The default is the
+  /// standard deviation of an error that is uniformly distributed within half a step. 0: positions are exact.
   double steps = 0.288675134594812882;
 };
 
-/// Prior standard deviations of the errors of an arm. With 0 a variable is fixed.
+/// Prior standard deviations of the errors of an arm. A variable with 0 is fixed.
 struct ArmPrior {
   double length = 0.005;     ///< Relative error of each section's length.
   double bend_gain = 0.01;   ///< Relative error of each section's bend, equal in all poses.
   double bend_share = 0.01;  ///< Relative error of each bend, independent in each pose.
   double bend = 0.001;       ///< Additional error of each bend, rad.
-  /// Error of the bends that the model predicts for a command, equal in all poses: each section's bend is
-  /// wrong by an unknown share of every section's commanded bend, and of its own sag. With 0 and
-  /// `pose_response` = 0 the arm has no such errors.
+  /// Error of the bends that the model predicts for a command, equal in all poses. The error of each
+  /// section's bend is a sum of unknown shares of all sections' commanded bends and of its own sag. This is
+  /// the standard deviation of these shares. If `response` and `pose_response` are 0, the arm has no such
+  /// errors.
   double response = 0;
-  double pose_response = 0;  ///< Error of that kind, independent in each pose.
+  /// Standard deviation of additional shares as in `response`, which are independent in each pose.
+  double pose_response = 0;
 };
 
 /// Prior standard deviations of the errors of a rig.
 struct RigPrior {
-  ArmPrior arm;                      ///< Equal for all sections.
-  std::vector<CameraPrior> cameras;  ///< One per camera.
+  ArmPrior arm;                      ///< Priors of the arm, equal for all sections.
+  std::vector<CameraPrior> cameras;  ///< Priors of the cameras, one per camera.
 };
 
 /// Returns the prior of a rough initial guess. The standard deviations are 10 degrees for rotations, 10 % for
-/// focal lengths and 10 px for principal points. For a camera's position the standard deviation is `share`
-/// times the camera's distance from the point `seen` (W, m; default: the arm's base). For the zeros of tilt
-/// axes it is 2 degrees, also for the zeros of pan axes if the camera's stage can move.
+/// focal lengths and 10 px for principal points. For a camera's position, it is `share` times the camera's
+/// distance from the point `seen` (W, m; default: the arm's base). For the zeros of tilt axes, it is 2
+/// degrees. It is also 2 degrees for the zeros of pan axes of cameras whose stage can move.
 [[nodiscard]] RigPrior rough_prior(const RigModel& model, double share = 0.2,
                                    const std::optional<Eigen::Vector3d>& seen = {});
 

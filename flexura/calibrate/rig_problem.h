@@ -10,17 +10,18 @@
 
 namespace flexura {
 
-/// An observation that the rig does not explain, by its indices.
+/// Indices of an observation that the rig does not explain.
 struct RigOutlier {
   std::size_t image = 0;
-  std::size_t thing = 0;  ///< Index in the image's markers, then axis points, then etalon points.
+  /// Index in the list of the image's markers, then its axis points, then its etalon points.
+  std::size_t thing = 0;
 
   bool operator==(const RigOutlier&) const = default;
 };
 
-/// The cost function of a rig estimate. The cost is half the sum over the observation residuals and the
-/// deviations of x from the prior, in standard deviations. A residual's cost is its square up to a bound, and
-/// linear beyond (P. J. Huber, 1964).
+/// The cost function of a rig estimate. The cost is half the sum of the costs of all observation residuals
+/// and of the squared deviations of x from the prior, both in standard deviations. A residual's cost is its
+/// square up to a bound, and linear beyond (P. J. Huber, 1964).
 class RigProblem {
  public:
   RigProblem(const RigModel& guess, const RigPrior& prior, RigObservations seen);
@@ -29,16 +30,17 @@ class RigProblem {
   [[nodiscard]] const RigPrior& prior() const { return prior_; }
   [[nodiscard]] const RigObservations& observations() const { return seen_; }
 
-  /// Assigns a rim half (RimHalf) to each point of the cylinder's rims: the half that the rig's cameras at x
-  /// see. The halves then stay fixed. Returns whether any half changed.
+  /// Assigns a rim half (RimHalf) to each point of the cylinder's rims: the one that bounds the silhouette
+  /// for the rig at x. Later functions use these halves. Returns whether any half changed.
   bool choose_rims(const Eigen::VectorXd& x);
-  /// Linearises at x. Returns false if the rig at x would not show the observations.
+  /// Linearises the residuals at x. Returns false if an observed point would be invisible for the rig at x.
   [[nodiscard]] bool linearise(const Eigen::VectorXd& x);
   [[nodiscard]] const std::vector<RigRows>& rows() const { return rows_; }
 
-  /// Returns the cost at the linearisation point, with the given bound of quadratic residuals.
+  /// Returns the cost at the linearisation point. `bound`: size of a residual, in standard deviations, beyond
+  /// which its cost is linear.
   [[nodiscard]] double cost(double bound) const;
-  /// Computes the gradient and the Gauss-Newton matrix, of which only the lower triangle is set.
+  /// Computes the gradient and the Gauss-Newton matrix. Only the lower triangle of the matrix is set.
   void normal(double bound, Eigen::VectorXd& gradient, Eigen::MatrixXd& matrix) const;
 
   /// Returns the size of the residual of each observation that is not an outlier, in standard deviations.

@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// A quantity that follows from a rig, with its gradient with respect to the rig's variables.
+/// A quantity that is computed from a rig, with its gradient with respect to the rig's variables.
 struct RigQuantity {
   std::string name;
   double value = 0;
@@ -20,8 +20,8 @@ struct RigQuantity {
   [[nodiscard]] double sigma(const Eigen::MatrixXd& covariance) const;
 };
 
-/// A stance to evaluate: an observed stance at its true position, or a planned stance. For a planned stance
-/// the error of the head adds to the uncertainty.
+/// A stance to evaluate: an observed stance at its estimated position, or a planned stance. The uncertainty
+/// of a planned stance includes the error of the head.
 struct AskedStance {
   RigStance where;
   std::optional<std::size_t> observed;  ///< Index of the observed stance; empty if planned.
@@ -31,7 +31,7 @@ struct AskedStance {
 /// The optical axis of a camera, from its pupil along C's z, in W.
 struct OpticalAxis {
   Eigen::Matrix3d R_WC;
-  Eigen::Vector3d pupil, direction;  ///< Position of the pupil, m; unit direction of the axis; both in W.
+  Eigen::Vector3d pupil, direction;  ///< Position of the pupil (m) and unit direction of the axis, both in W.
   Eigen::Matrix<double, 3, Eigen::Dynamic> pupil_by_x, direction_by_x;
   double focal = 0;  ///< Focal length sqrt(fx fy) at the stance's zoom, px.
   Eigen::RowVectorXd log_focal_by_x;
@@ -41,8 +41,8 @@ struct OpticalAxis {
 
 /// Returns the angle between two cameras' optical axes, rad in [0, pi].
 [[nodiscard]] RigQuantity axes_angle(const OpticalAxis& a, const OpticalAxis& b);
-/// Returns the distances by which a camera's axis misses a point of W: to the camera's right and downwards,
-/// m.
+/// Returns the distance between a camera's axis and a point of W, with components to the camera's right and
+/// downwards, m.
 [[nodiscard]] std::array<RigQuantity, 2> aim_errors(const OpticalAxis& axis, const Eigen::Vector3d& p_WP);
 /// Returns the logarithm of the ratio of two cameras' magnifications at a point of W: `a` to `b`. A
 /// magnification is the focal length divided by the point's depth.

@@ -12,14 +12,15 @@
 namespace flexura {
 
 /// Linear model of the errors of an arm's response to commands (docs/calibration.md, "An arm unlike its
-/// model"). The bend of an arc changes by a sum of unknown shares of inputs. Inputs are the commanded bends
-/// of all driven sections, and the section's own bend without a command (its sag). Both are vectors, and
-/// shares are numbers: a section of a round arm has the same stiffness in all directions.
+/// model"). The error of an arc's bend is a sum of inputs, each multiplied by an unknown share. Inputs are
+/// the commanded bends of all driven sections, and the section's own bend without a command (its sag). Inputs
+/// are vectors, but shares are scalars, because a section of a round arm has equal stiffness in all
+/// directions.
 class RigResponse {
  public:
-  /// No errors: inputs() and sections() are 0.
+  /// Model without errors: inputs() and sections() are 0.
   RigResponse() = default;
-  /// `commands`: the poses as commanded. Throws std::invalid_argument if a command does not fit the arm.
+  /// `commands`: commanded poses. Throws std::invalid_argument if a command does not fit the arm.
   RigResponse(const RigModel& model, const std::vector<ArmState>& commands);
 
   /// Returns the number of inputs of each arc.
@@ -30,24 +31,25 @@ class RigResponse {
   [[nodiscard]] std::size_t section_of(std::size_t arc) const { return section_of_[arc]; }
   /// Returns an arc's share of its section's change of bend: 1 / number of the section's arcs.
   [[nodiscard]] double share(std::size_t arc) const { return shares_[arc]; }
-  /// Returns an input in words, such as "command 2".
+  /// Returns the name of an input, such as "command 2".
   [[nodiscard]] std::string name(std::size_t input) const;
-  /// Returns whether an input can be other than 0.
+  /// Returns whether an input can differ from 0.
   [[nodiscard]] bool acts(std::size_t input) const { return input < sections_ || sags_; }
-  /// Returns an input of an arc in a pose, times the arc's share, rad.
+  /// Returns an input of an arc in a pose, multiplied by the arc's share, rad.
   [[nodiscard]] Eigen::Vector2d input(std::size_t pose, std::size_t arc, std::size_t input) const {
     const Eigen::Vector2d& whole = input < sections_ ? commands_[pose].bends[input] : sag_[section_of_[arc]];
     return shares_[arc] * whole;
   }
-  /// Returns the first pose with the same command, to within 2 mrad.
+  /// Returns the first pose whose command equals that of `pose` within 2 mrad.
   [[nodiscard]] std::size_t first_like(std::size_t pose) const { return first_like_[pose]; }
 
   /// Principal directions of the inputs of a pose.
   struct Axes {
-    Eigen::Matrix2d directions = Eigen::Matrix2d::Identity();  ///< Unit vectors, one column each.
-    std::array<double, 2> sizes = {0, 0};  ///< Root of the inputs' sum of squares along each, rad.
+    Eigen::Matrix2d directions = Eigen::Matrix2d::Identity();  ///< Unit vectors, as columns.
+    /// Square root of the inputs' sum of squares along each direction, rad.
+    std::array<double, 2> sizes = {0, 0};
   };
-  /// Returns the axes of a pose; those of the first pose like it.
+  /// Returns the axes of first_like(pose).
   [[nodiscard]] const Axes& axes(std::size_t pose) const { return axes_[first_like_[pose]]; }
 
  private:

@@ -16,7 +16,7 @@ namespace flexura {
 /// Residuals of one image in standard deviations, and their derivatives with respect to the relevant
 /// variables of x.
 struct RigRows {
-  std::vector<Eigen::Index> columns;  ///< Indices of these variables in x.
+  std::vector<Eigen::Index> columns;  ///< Indices of the relevant variables in x.
   Eigen::VectorXd residuals;          ///< (predicted - observed)/sigma.
   Eigen::MatrixXd derivatives;        ///< One row per residual, one column for each of `columns`.
   /// Number of rows of each observation: 2 per marker, then 1 per axis point, then 1 per etalon point.
@@ -30,18 +30,18 @@ class RigProjector {
   RigProjector(const RigVariables& variables, const Eigen::VectorXd& x,
                const std::optional<EtalonConfig>& etalon = {});
 
-  /// Computes the rows of an image. Returns false if the rig would not show an observation, because it is
-  /// behind the camera or outside the range of the lens.
+  /// Computes the rows of an image. Returns false if an observed point would be invisible for the rig: behind
+  /// the camera, or outside the range of the lens.
   [[nodiscard]] bool rows(const RigImage& image, RigRows& rows);
 
-  /// Image of a point of the arm from a stance, with derivatives with respect to all slots, in the order
+  /// Image of a point of the arm for a stance. Its derivatives are with respect to all slots, in the order
   /// camera, arm, pose, stance.
   struct Shown {
     Eigen::Vector2d pixel;
     Eigen::Matrix<double, 2, Eigen::Dynamic> by_slots;
   };
   [[nodiscard]] std::optional<Shown> show(std::size_t pose, std::size_t stance, const MaterialPoint& point);
-  /// Returns the view of a stance at its true position.
+  /// Returns the view of a stance at its estimated position.
   [[nodiscard]] View view(std::size_t stance) const;
 
  private:

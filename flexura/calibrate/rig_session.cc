@@ -75,8 +75,8 @@ class Session {
     constexpr double unrecoverable = 3 * degree;
     if (const double sigma = result_.steps.back().sigmas.angle; !(sigma < unrecoverable))
       return fmt::format(
-          "the standard deviation of the angle between the axes is still {} deg: take more images, other "
-          "poses or turns of the heads",
+          "the standard deviation of the angle between the axes is still {} deg: use more images, other "
+          "poses or larger ranges of the heads",
           bounded_text(sigma / degree, most_degrees));
     result_.is_done = true;
     return std::nullopt;
@@ -110,7 +110,7 @@ class Session {
       }
       constexpr int patience = 3;
       if (misses_[i] >= patience)
-        return fmt::format("camera {} does not see the {} in {} pictures in a row: {}", name(i), what_,
+        return fmt::format("camera {} does not see the {} in {} successive pictures: {}", name(i), what_,
                            patience, observed_.seen.reason);
     }
     return std::nullopt;
@@ -224,7 +224,7 @@ class Session {
     next_.reset();
     if (result_.looks + 1 >= config_.images || is_enough()) {
       step.next = result_.looks < config_.images && !has_moved_
-                      ? "the move to the target configuration, and a look that verifies it"
+                      ? "the move to the target configuration, and a view that verifies it"
                       : "";
       return;
     }
@@ -256,7 +256,7 @@ class Session {
     if (auto error = look({pose(0), {desired_.stances[0], desired_.stances[1]}})) return error;
     for (std::size_t i = 0; i < 2; ++i) {
       if (misses_[i] > 0)
-        return fmt::format("the {} is not seen by camera {} after the move: {}", what_, name(i),
+        return fmt::format("after the move, the {} is not visible for camera {}: {}", what_, name(i),
                            result_.after[i]->seen.reason);
       const CameraObservation& observed = *result_.after[i];
       // Marker and border positions have a minimum error, whatever the noise of a picture.
@@ -266,8 +266,8 @@ class Session {
       result_.verified[i] = prediction.px;
       if (!(prediction.sigmas <= most))
         return fmt::format(
-            "after the move camera {} sees the {} {} px from its predicted position, which is {} standard "
-            "deviations: the head may have backlash or was pushed{}",
+            "after the move, camera {} sees the {} at a distance of {} px from its predicted position, which "
+            "is {} standard deviations: the head may have backlash or was pushed{}",
             name(i), what_, bounded_text(prediction.px, 1000, 3), bounded_text(prediction.sigmas, 1000, 3),
             config_.etalon ? "" : ", or the arm does not bend reproducibly");
     }

@@ -201,7 +201,7 @@ std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
   view.markers = std::max<std::size_t>(config_.picture.markers.size(), 2), view.fewest = config_.fewest;
   const auto choice =
       next_best_view(problem, found, candidates, goals(problem.variables(), found, desired), view);
-  if (!choice) return {std::nullopt, "another pose: no view is known to show the arm"};
+  if (!choice) return {std::nullopt, "another pose: no view is expected to show the arm"};
   const ViewCandidate& best = candidates[choice->candidate];
   const auto pose =
       std::ranges::find_if(config_.poses, [&](const ArmState& one) { return one.bends == best.pose.bends; });
@@ -239,17 +239,19 @@ RigCommander::Error RigSessionPlan::error_with(const RigModel& model, const Desi
     step_of_heads = std::max({step_of_heads, head.pan.resolution, head.tilt.resolution});
   }
   if (left > far_off + step_of_heads + likely * step.sigmas.angle)
-    return fmt::format("at the limits of heads and stages the axes would be {:.1f} deg from orthogonal{}",
-                       left / degree, why);
+    return fmt::format(
+        "at the limits of heads and stages, the angle between the axes would differ by {:.1f} deg from 90 "
+        "deg{}",
+        left / degree, why);
   // The heads make up for the stages and then look beside the arm.
   constexpr double most_aside = 0.1;  // Share of the distance.
   for (std::size_t i = 0; i < 2; ++i) {
     const double aside = desired.remainder.aim[i].norm();
     if (aside > most_aside * sights[i].norm())
       return fmt::format(
-          "at the limits of the stages the lines of sight are {:.1f} deg apart: with orthogonal axes, that "
-          "of camera {} would pass {:.2f} m beside the {}; mount the cameras more nearly at a right angle, "
-          "or allow more travel of the stages{}",
+          "at the limits of the stages, the lines of sight are {:.1f} deg apart: with orthogonal axes, the "
+          "axis of camera {} would pass at {:.2f} m from the {}; mount the cameras more nearly at a right "
+          "angle, or allow more travel of the stages{}",
           angle / degree, model.cameras[desired.stances[i].camera].name, aside,
           config_.etalon ? "cylinder" : "arm", why);
   }

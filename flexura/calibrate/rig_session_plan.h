@@ -11,10 +11,10 @@
 
 namespace flexura {
 
-/// Returns whether a candidate would show a camera almost the same as an earlier look. `look`: the earlier
-/// pose, with the camera's stance as the first one. The bends must agree within 2 degrees, the views within 2
-/// degrees and 5 cm, and the sizes within a tenth. Throws std::out_of_range for a look at another arm, or a
-/// zoom outside the lens's table.
+/// Returns whether a candidate view is similar to an earlier view of one camera. `look`: the earlier pose,
+/// with the camera's stance as the first stance. In similar views, the bends agree within 2 degrees, the
+/// cameras' poses within 2 degrees and 5 cm, and the sizes within 10 %. Throws std::out_of_range for a view
+/// of another arm, or a zoom outside the lens's table.
 [[nodiscard]] bool is_like(const RigModel& model, const ViewCandidate& candidate, const ViewCandidate& look);
 
 /// Decides a session's next action from the present estimate. Sends no commands.
@@ -23,27 +23,27 @@ class RigSessionPlan {
   RigSessionPlan(const RigModel& nominal, const RigSessionConfig& config)
       : nominal_(nominal), config_(config) {}
 
-  /// Returns the stance of a camera for the first look: its initial stance, but with the shortest focal
-  /// length for an etalon.
+  /// Returns the stance of a camera for the first view: its initial stance; with an etalon, its initial
+  /// stance with the shortest focal length.
   [[nodiscard]] RigStance first(const RigStance& begins) const;
-  /// Returns the target of the cameras in W, m. It is the configured target, else the middle of the etalon,
-  /// else the middle of the arm in the first pose.
+  /// Returns the target of the cameras in W, m. It is the configured target. By default, it is the middle of
+  /// the etalon or, without an etalon, the middle of the arm in the first pose.
   [[nodiscard]] Eigen::Vector3d target(const RigModel& model) const;
-  /// Returns the positions to command for the required configuration, from the present positions.
+  /// Returns the commands for the required configuration. `stances`: present positions.
   [[nodiscard]] DesiredRig desired(const RigModel& model, const std::array<RigStance, 2>& stands) const;
-  /// Fills in the estimates for the required configuration.
+  /// Adds the estimates for the required configuration to `step`.
   void know(const RigVariables& variables, const RigCalibration& found, const DesiredRig& desired,
             RigStep& step) const;
-  /// Returns the next look from the present positions, and its expected result in words. Excludes looks that
-  /// are similar to one in `missed`: earlier looks, each of one camera, that showed too little.
+  /// Returns the next view from the present positions, and its expected result in words. Excludes views that
+  /// are similar to one in `missed`, the earlier views of one camera that showed too little.
   [[nodiscard]] std::pair<std::optional<ViewCandidate>, std::string> next(
       const RigProblem& problem, const RigCalibration& found, const DesiredRig& desired,
       const std::array<RigStance, 2>& stands, const std::vector<ViewCandidate>& missed) const;
-  /// Returns why the required configuration is not acceptable, if so: both cameras look from about the same
-  /// direction, or would not see the arm. No error as long as the angle between the axes is not known.
+  /// Returns an error if the required configuration is not acceptable: both cameras would look from about the
+  /// same direction, or would not see the arm. Returns no error while the angle between the axes is unknown.
   [[nodiscard]] RigCommander::Error error_with(const RigModel& model, const DesiredRig& desired,
                                                const RigStep& step, const ArmState& home) const;
-  /// Returns the turns of the head from its present position for the search of the arm: pan and tilt, rad.
+  /// Returns the changes of pan and tilt, rad, from the head's present position for the search for the arm.
   [[nodiscard]] std::vector<Eigen::Vector2d> search_directions() const;
 
  private:

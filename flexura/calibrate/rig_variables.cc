@@ -100,8 +100,8 @@ void RigVariables::add_camera(const CameraConfig& camera, const CameraPrior& pri
   const CameraPrior usual;  // Default sizes for variables without a prior.
   const std::string name = camera.name + ": ";
   cameras_.push_back(slots_.size());
-  add3(name + "mount's place", prior.position, usual.position);
-  add3(name + "mount's turn", prior.rotation, usual.rotation);
+  add3(name + "mount's position", prior.position, usual.position);
+  add3(name + "mount's rotation", prior.rotation, usual.rotation);
   add(name + "pan's zero", prior.pan_zero, usual.tilt_zero);
   add(name + "tilt's zero", prior.tilt_zero, usual.tilt_zero);
   add3(name + "tilt axis", prior.tilt_axis, usual.tilt_axis);

@@ -13,8 +13,8 @@
 
 namespace flexura {
 
-/// Slots of the variables of a camera's description, in order. They are followed by one variable for each row
-/// of a zoom table: the logarithm of the factor on its focal lengths.
+/// Slots of the variables of a camera's model, in order. One variable per row of a zoom table follows: the
+/// logarithm of the factor on the row's focal lengths.
 enum CameraSlot : Eigen::Index {
   mount_position_slot = 0,  // 3: m, in W
   mount_rotation_slot = 3,  // 3: rotation vector in W, from the guess, rad
@@ -30,21 +30,21 @@ enum CameraSlot : Eigen::Index {
   zoom_row_slot = 24,
 };
 
-/// Number of slots of a stance. They are offsets from the reading: pan, tilt (rad), zoom (in its own unit),
-/// and the stage's x, y and z (m).
+/// Number of slots of a stance. They are offsets from the measured positions: pan, tilt (rad), zoom (in its
+/// own unit), and the stage's x, y and z (m).
 inline constexpr Eigen::Index stance_slots = 6;
 
-/// The unknown errors of a rig and of its readings as one vector x, where x = 0 is the guess. Each variable
-/// is an offset from the guess in its own unit. Variables that the prior fixes have no entry in x. First come
-/// the variables of each camera and of the arm (logarithms of the lengths, bend gains, errors of the
-/// response). Then follow those of each pose (bend offsets from the command) and of each stance. If the prior
-/// has errors of the response, poses with equal commands share their variables. The variables of cameras and
-/// arm are the rig's own, and globals() is their number. The others belong to the pictures.
+/// The unknown errors of a rig and of its measured positions as one vector x, where x = 0 is the guess. Each
+/// variable is an offset from the guess in its own unit. Variables that the prior fixes have no entry in x.
+/// The first variables are those of each camera and of the arm (logarithms of the lengths, bend gains, errors
+/// of the response). Those of each pose (bend offsets from the command) and of each stance follow. If the
+/// prior has errors of the response, poses with equal commands share their variables. The variables of
+/// cameras and arm are called the rig's own variables; globals() is their number.
 class RigVariables {
  public:
-  /// Throws std::invalid_argument unless there is one prior per camera, or if a prior is negative or NaN.
-  /// Also throws it if observations refer to missing cameras, stances or poses, to another arm, or are in
-  /// another order. Throws std::out_of_range for a marker beyond the arm's end.
+  /// Throws std::invalid_argument if there is not one prior per camera, or if a prior is negative or NaN.
+  /// Also throws it if observations refer to missing cameras, stances or poses, do not fit the arm, or are in
+  /// a wrong order. Throws std::out_of_range for a marker beyond the arm's end.
   RigVariables(const RigModel& guess, const RigPrior& prior, const RigObservations& seen);
 
   /// A variable of the rig.
@@ -52,7 +52,7 @@ class RigVariables {
     std::string name;  ///< Name, such as "front: mount, x".
     double sigma = 0;  ///< Prior standard deviation.
     double scale =
-        0;  ///< Relevant size in the variable's unit: sigma, or a similar size if sigma is infinite.
+        0;  ///< Typical size, in the variable's unit: sigma, or a similar size if sigma is infinite.
     Eigen::Index column = -1;  ///< Index in x; -1: fixed.
   };
 
@@ -67,7 +67,7 @@ class RigVariables {
   /// Returns the rig at x = 0.
   [[nodiscard]] const RigModel& guess() const { return guess_; }
 
-  /// Returns a camera's first slot, for column() and value().
+  /// Returns the index of a camera's first slot, for column() and value().
   [[nodiscard]] std::size_t camera_slots(std::size_t camera) const { return cameras_.at(camera); }
   /// Returns the arm's first slot.
   [[nodiscard]] std::size_t arm_slots() const { return arm_; }
@@ -77,15 +77,15 @@ class RigVariables {
   [[nodiscard]] Eigen::Index slots_of_arm() const;
   /// Returns the number of slots of each pose.
   [[nodiscard]] Eigen::Index slots_a_pose() const;
-  /// Returns the errors of the arm's response; empty if the prior has none.
+  /// Returns the error model of the arm's response; without inputs if the prior has no such errors.
   [[nodiscard]] const RigResponse& response() const { return response_; }
   /// Returns the first slot of a stance of a camera.
   [[nodiscard]] std::size_t stance_slots_of(std::size_t stance) const { return stances_.at(stance); }
   /// Returns a camera's number of slots.
   [[nodiscard]] Eigen::Index slots_a_camera(std::size_t camera) const;
-  /// Returns the index of a slot's variable in x; -1: fixed.
+  /// Returns the index of a slot's variable in x; -1 for a fixed variable.
   [[nodiscard]] Eigen::Index column(std::size_t slot) const { return slots_[slot].column; }
-  /// Returns a slot's value in x; 0 if fixed.
+  /// Returns the value of a slot's variable in x; 0 for a fixed variable.
   [[nodiscard]] double value(const Eigen::VectorXd& x, std::size_t slot) const {
     return slots_[slot].column < 0 ? 0.0 : x[slots_[slot].column];
   }
@@ -98,14 +98,14 @@ class RigVariables {
     return {value(x, slot), value(x, slot + 1), value(x, slot + 2)};
   }
 
-  /// Returns whether x describes a valid rig: each variable within a thousand times its prior, focal lengths
-  /// rising with the zoom.
+  /// Returns whether x describes a valid rig: each variable is within a thousand times its prior, and focal
+  /// lengths increase with the zoom.
   [[nodiscard]] bool is_rig(const Eigen::VectorXd& x) const;
   /// Returns the rig described by x.
   [[nodiscard]] RigModel model(const Eigen::VectorXd& x) const;
   /// Returns the commanded arm poses of the observations.
   [[nodiscard]] const std::vector<ArmState>& commanded() const { return commanded_; }
-  /// Returns the camera stances of the observations as read.
+  /// Returns the measured camera stances of the observations.
   [[nodiscard]] const std::vector<RigStance>& read() const { return read_; }
   /// Returns the estimated arm pose.
   [[nodiscard]] ArmState pose(const Eigen::VectorXd& x, std::size_t pose) const;

@@ -106,7 +106,7 @@ ZoomCorrelation correlate_zoom(const Image<std::uint8_t>& real, const Image<std:
   constexpr double least = 0.5;
   if (found.peak < least)
     found.reason = fmt::format(
-        "the correlation is {:.2f} at best: the picture does not show the expected arc", found.peak);
+        "the largest correlation is {:.2f}: the picture does not show the expected arc", found.peak);
   return found;
 }
 

@@ -5,7 +5,8 @@
 
 namespace flexura {
 
-/// Motion limits of one motor-driven axis of a camera. The unit of position is rad, m, or zoom position.
+/// Motion limits of one motor-driven axis of a camera. The unit of positions is rad, m, or that of zoom
+/// positions.
 struct AxisConfig {
   std::array<double, 2> limits = {0, 0};  ///< Smallest and largest position.
   /// Largest speed, units of position per second.

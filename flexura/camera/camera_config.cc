@@ -30,8 +30,8 @@ void check_name(const std::string& name, Reader& reader) {
   if (name.empty()) {
     reader.problem_at("name", "is empty: expected a name");
   } else if (!std::ranges::all_of(name, is_plain) || name.front() == '.' || name.size() > longest) {
-    reader.problem_at("name", fmt::format("{} cannot name a file: expected at most {} letters, digits, -, _, "
-                                          "spaces and points, and no point first",
+    reader.problem_at("name", fmt::format("{} cannot be a file name: expected at most {} letters, digits, -, "
+                                          "_, spaces and points, not beginning with a point",
                                           Node{name, {}}.brief(), longest));
   }
 }
@@ -69,7 +69,7 @@ const Table<CameraStartConfig>& fields_of(const CameraStartConfig*) {
           .field("tilt", &CameraStartConfig::tilt,
                  {.meaning = "Tilt angle, positive upwards.", .unit = Unit::radian, .range = turn_range})
           .field("zoom", &CameraStartConfig::zoom,
-                 {.meaning = "Zoom ratio, or motor count where the lens table has counts.",
+                 {.meaning = "Zoom ratio, or motor position if the lens table has counts.",
                   .range = {.min = -1e9, .max = 1e9},
                   .default_text = "the lower limit"})
           .field("stage", &CameraStartConfig::stage,
@@ -84,7 +84,7 @@ const Table<CameraConfig>& fields_of(const CameraConfig*) {
       Table<CameraConfig>("camera", "A camera on a pan/tilt/zoom head.")
           .field("name", &CameraConfig::name,
                  {.meaning = "Name of the camera in tasks and files: letters, digits, -, _, spaces and "
-                             "points, no point first.",
+                             "points, not beginning with a point.",
                   .required = true})
           .field("mount", &CameraConfig::mount,
                  {.meaning = "Position and orientation of the head.", .required = true})

@@ -16,7 +16,7 @@ namespace flexura {
 
 /// Positions of a camera's axes at the start of a run.
 struct CameraStartConfig {
-  double pan = 0, tilt = 0;    ///< Angles that the head reads, rad.
+  double pan = 0, tilt = 0;    ///< Angles that the head reports, rad.
   std::optional<double> zoom;  ///< Zoom position; default: its lower limit.
   /// Stage offset along the mount's axes (right, down, forward), m.
   std::array<double, 3> stage = {0, 0, 0};
@@ -42,13 +42,13 @@ const Table<CameraConfig>& fields_of(const CameraConfig*);
 /// Returns the camera with the principal point moved by `by`, px, equally at all zoom positions.
 [[nodiscard]] CameraConfig with_principal_point_moved(CameraConfig camera, const Eigen::Vector2d& by);
 
-/// Reports to `reader` cameras with the same name. `path` is the place of `cameras` in the document.
+/// Reports to `reader` if cameras have equal names. `path`: path of `cameras` in the document.
 void check_cameras(const std::vector<CameraConfig>& cameras, const std::string& path, Reader& reader);
 
 /// Returns the paper's two cameras, which look at `center`, in W, m. "front" is on the +Z side and looks
-/// along -Z at the plane XOY; "side" is on the -X side and looks along +X at the plane ZOY. At their
-/// distance, a sphere of radius `reach`, m, around `center` fits into the image with a margin of a twentieth.
-/// Throws std::invalid_argument for a reach that is not positive.
+/// along -Z at the plane XOY; "side" is on the -X side and looks along +X at the plane ZOY. Their distance is
+/// such that a sphere of radius `reach`, m, around `center` fits into the image with a margin of 5 %. Throws
+/// std::invalid_argument for a reach that is not positive.
 [[nodiscard]] std::vector<CameraConfig> default_cameras(double reach,
                                                         const std::array<double, 3>& center = {0, 0, 0});
 

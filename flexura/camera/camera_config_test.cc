@@ -58,7 +58,7 @@ TEST(CameraConfig, SaysWhatIsWrong) {
   const Node::Array swapped{{1.0, {}}, {-1.0, {}}};
   EXPECT_THAT(error_of(front(), "name", std::string()), HasSubstr("name: is empty"));
   for (const std::string name : {"/tmp/x", "../../x", ".x", "a\\b", "\xc3\xa4"})
-    EXPECT_THAT(error_of(front(), "name", name), HasSubstr("cannot name a file: expected")) << name;
+    EXPECT_THAT(error_of(front(), "name", name), HasSubstr("cannot be a file name: expected")) << name;
   EXPECT_THAT(error_of(front(), "name", std::string(101, 'a')), HasSubstr("at most 100 letters"));
   EXPECT_EQ(error_of(front(), "name", std::string("Sony 2.B_left-1")), "no error");
   EXPECT_THAT(error_of(front(), "lens.fx", 0.0), HasSubstr("lens.fx = 0: expected a number from 0.001"));
@@ -83,7 +83,7 @@ TEST(CameraConfig, SaysWhatIsWrong) {
   EXPECT_THAT(error_of(counted, "head.zoom.limits", Node::Array{{0.0, {}}, {20000.0, {}}}),
               HasSubstr("head.zoom.limits: leave the lens's table: expected 0 to 16384"));
   EXPECT_THAT(error_of(counted, "lens.zoom.3.ratio", 30.0),
-              HasSubstr("lens.zoom[4].ratio: expected a rising ratio"));
+              HasSubstr("lens.zoom[4].ratio: expected a ratio that increases from row to row"));
 }
 
 TEST(CameraConfig, CamerasHaveNamesOfTheirOwn) {

@@ -16,8 +16,8 @@ template <class Turn>
 Table<Turn> turn_table(const char* name, const char* meaning) {
   Table<Turn> table = axis_table<Turn>(name, meaning, turn_units, turn_range);
   table.field("zero", &Turn::zero,
-              {.meaning = "Zero offset: angle of the axis when the head reads 0. The true angle is the "
-                          "reading plus this offset.",
+              {.meaning = "Zero offset: true angle of the axis when the head reports 0. The true angle is "
+                          "the reported angle plus this offset.",
                .unit = Unit::radian,
                .range = turn_range});
   return table;
@@ -48,20 +48,21 @@ AxisConfig ZoomConfig::axis(const ZoomTable& lens) const {
 }
 
 const Table<PanConfig>& fields_of(const PanConfig*) {
-  static const auto table =
-      turn_table<PanConfig>("pan", "Pan axis, vertical at the head's foot; positive to the camera's left.");
+  static const auto table = turn_table<PanConfig>(
+      "pan", "Pan axis along the mount's vertical axis; positive to the camera's left.");
   return table;
 }
 
 const Table<TiltConfig>& fields_of(const TiltConfig*) {
-  static const auto table = turn_table<TiltConfig>("tilt", "Tilt axis, across the camera; positive upwards.");
+  static const auto table =
+      turn_table<TiltConfig>("tilt", "Tilt axis, perpendicular to the viewing direction; positive upwards.");
   return table;
 }
 
 const Table<ZoomConfig>& fields_of(const ZoomConfig*) {
   static const auto table = [] {
-    Table<ZoomConfig> zoom("zoom",
-                           "Zoom axis, in ratios, or in motor counts where the lens table has counts.");
+    Table<ZoomConfig> zoom(
+        "zoom", "Zoom axis. Positions are ratios, or motor positions if the lens table has counts.");
     zoom.field("limits", &ZoomConfig::limits,
                {.meaning = "Smallest and largest position.",
                 .range = {.min = -1e9, .max = 1e9},
@@ -85,13 +86,13 @@ const Table<HeadConfig>& fields_of(const HeadConfig*) {
                   .unit = Unit::second,
                   .range = between(0, 1e3)})
           .field("tilt_axis", &HeadConfig::tilt_axis,
-                 {.meaning = "Point on the tilt axis, from the mount's origin on the pan axis: right, down, "
-                             "forward at pan 0.",
+                 {.meaning = "Point on the tilt axis relative to the mount's origin on the pan axis: right, "
+                             "down, forward at pan 0.",
                   .unit = Unit::metre,
                   .range = offset_range})
           .field("pupil", &HeadConfig::pupil,
-                 {.meaning = "Entrance pupil at zoom ratio 1, from `tilt_axis`: right, down, forward in the "
-                             "camera's axes.",
+                 {.meaning = "Position of the entrance pupil at zoom ratio 1 relative to `tilt_axis`: right, "
+                             "down, forward in the camera's axes.",
                   .unit = Unit::metre,
                   .range = offset_range})
           .field("pupil_shift", &HeadConfig::pupil_shift,

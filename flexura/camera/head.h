@@ -16,24 +16,24 @@ namespace flexura {
 struct PanConfig : AxisConfig {
   PanConfig();
 
-  double zero = 0;  ///< Angle of the axis when the head reads 0, rad.
+  double zero = 0;  ///< True angle of the axis when the head reports 0, rad.
 };
 
 /// The tilt axis of a head. Angles are in rad, positive upwards.
 struct TiltConfig : AxisConfig {
   TiltConfig();
 
-  double zero = 0;  ///< Angle of the axis when the head reads 0, rad.
+  double zero = 0;  ///< True angle of the axis when the head reports 0, rad.
 };
 
-/// The zoom axis of a head. Zoom positions are ratios, or motor counts if the lens's table has counts.
+/// The zoom axis of a head. Zoom positions are ratios, or motor positions if the lens's table has counts.
 struct ZoomConfig {
   /// Smallest and largest zoom position. Default: 1 to 10 for a linear zoom, otherwise the range of the
   /// lens's table.
   std::optional<std::array<double, 2>> limits;
   std::optional<double>
-      max_rate;  ///< Largest speed, zoom positions per second; default: the whole range in 3 s.
-  /// The meaning of the following members is as in AxisConfig, in units of zoom position.
+      max_rate;  ///< Largest speed, units of zoom position per second; default: the whole range in 3 s.
+  /// This member and the following ones are as in AxisConfig, in units of zoom position.
   double max_acceleration = std::numeric_limits<double>::infinity();
   double resolution = 0;
   double backlash = 0;
@@ -55,10 +55,10 @@ struct HeadConfig {
   double pupil_shift = 0;  ///< Forward shift of the entrance pupil per unit of zoom ratio, m.
 };
 
-/// Position that a head reads.
+/// Position of a head, as it is commanded and reported.
 struct HeadState {
   double pan = 0, tilt = 0;  ///< Angles relative to the axes' zero offsets, rad.
-  double zoom = 1;           ///< Zoom position: ratio, or motor count if the lens's table has counts.
+  double zoom = 1;           ///< Zoom position: ratio, or motor position if the lens's table has counts.
 
   bool operator==(const HeadState&) const = default;
 };
@@ -76,15 +76,15 @@ struct HeadGeometry {
   Eigen::Vector3d pupil = Eigen::Vector3d::Zero();
 };
 
-/// Returns R_pan, the rotation about M's -y by `pan` rad. A positive angle turns M's z (forward) towards M's
-/// -x (left).
+/// Returns R_pan, the rotation about M's -y by `pan` rad. A positive angle rotates M's z (forward) towards
+/// M's -x (left).
 [[nodiscard]] Eigen::Matrix3d pan_rotation(double pan);
-/// Returns R_tilt, the rotation about x by `tilt` rad. A positive angle turns z (forward) towards -y (up).
+/// Returns R_tilt, the rotation about x by `tilt` rad. A positive angle rotates z (forward) towards -y (up).
 [[nodiscard]] Eigen::Matrix3d tilt_rotation(double tilt);
 
 /// Returns the camera's pose in the mount's frame, X_MC: pan about M's vertical axis, translation to the tilt
-/// axis, tilt, translation to the pupil. R_MC = R_pan R_tilt and p_MC = R_pan (tilt_axis + R_tilt pupil).
-/// `pan` and `tilt` are the true angles of the axes, rad: readings plus zero offsets.
+/// axis, tilt, and translation to the pupil. R_MC = R_pan R_tilt and p_MC = R_pan (tilt_axis + R_tilt pupil).
+/// `pan` and `tilt` are the true angles of the axes, rad.
 [[nodiscard]] Pose head_pose(const HeadGeometry& geometry, double pan, double tilt);
 
 }  // namespace flexura

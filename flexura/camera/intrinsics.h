@@ -34,15 +34,15 @@ struct Projection {
   Eigen::Matrix<double, 2, intrinsics_count> by_intrinsics;
 };
 
-/// A pixel (u, v) and its derivative with respect to the point alone.
+/// A pixel (u, v) and its derivative with respect to the point.
 struct PointProjection {
   Eigen::Vector2d pixel = {0, 0};  ///< Pixel (u, v), px.
   /// Derivative with respect to the point in C, px/m.
   Eigen::Matrix<double, 2, 3> by_point = Eigen::Matrix<double, 2, 3>::Zero();
 };
 
-/// A lens at one zoom position: projects points to pixels and pixels to rays. Its field is limited to radii
-/// at which the distortion is one-to-one.
+/// A lens at one zoom position. It projects points to pixels and pixels to rays. Its field of view is limited
+/// to radii for which the distortion is one-to-one.
 class Lens {
  public:
   /// Throws std::invalid_argument for a value that is not finite, or a focal length that is not positive.
@@ -51,22 +51,23 @@ class Lens {
   [[nodiscard]] const Intrinsics& intrinsics() const { return intrinsics_; }
 
   /// Returns the largest radius sqrt(a^2 + b^2), in normalized coordinates, up to which the radially
-  /// distorted radius increases. At larger radii the polynomial would fold the image over itself and does not
-  /// describe a real lens. Infinite if the distorted radius always increases.
+  /// distorted radius increases. At larger radii, the polynomial would fold the image over itself, which no
+  /// real lens does. The result is infinite if the distorted radius always increases.
   [[nodiscard]] double largest_radius() const { return largest_radius_; }
 
-  /// Returns the pixel of a point in C, m; empty behind the camera (z <= 0) or outside the largest radius.
+  /// Returns the pixel of a point in C, m; std::nullopt for points behind the camera (z <= 0) or outside the
+  /// largest radius.
   [[nodiscard]] std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_CP) const;
 
-  /// Returns the pixel of a point in C, m, with its derivatives; empty as for project().
+  /// Returns the pixel of a point in C, m, with its derivatives; std::nullopt as for project().
   [[nodiscard]] std::optional<Projection> project_with_derivatives(const Eigen::Vector3d& p_CP) const;
 
-  /// Computes the pixel of a point in C, m, with its derivative with respect to the point alone. Takes a
-  /// third of the time of project_with_derivatives(). Returns false if there is no pixel.
+  /// Computes the pixel of a point in C, m, and its derivative with respect to the point. It needs a third of
+  /// the time of project_with_derivatives(). Returns false if there is no pixel.
   [[nodiscard]] bool project_by_point(const Eigen::Vector3d& p_CP, PointProjection& result) const;
 
   /// Returns the undistorted normalized coordinates (a, b) of a pixel, accurate to about 1e-13. (a, b, 1) is
-  /// the direction of the pixel's ray in C. Empty if the distortion maps no ray to the pixel.
+  /// the direction of the pixel's ray in C. Returns std::nullopt if the distortion maps no ray to the pixel.
   [[nodiscard]] std::optional<Eigen::Vector2d> unproject(const Eigen::Vector2d& pixel) const;
 
  private:

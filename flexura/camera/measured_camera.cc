@@ -31,11 +31,9 @@ Eigen::Matrix3d matrix_of(const Rows& rows) {
 
 void check_measured_camera(const MeasuredCamera& camera, Reader& reader) {
   if (camera.rotation.error() > largest_error) {
-    reader.problem_at(
-        "rotation",
-        fmt::format("rotation deviates by {:.2g} from a rotation: expected the rows of a rotation "
-                    "matrix or a quaternion [w, x, y, z] of norm 1",
-                    camera.rotation.error()));
+    reader.problem_at("rotation", fmt::format("rotation: not a rotation (error {:.2g}): expected the rows of "
+                                              "a rotation matrix or a quaternion [w, x, y, z] of norm 1",
+                                              camera.rotation.error()));
   }
 }
 
@@ -97,16 +95,16 @@ Pose MeasuredCamera::pose() const { return {rotation.matrix(), {position[0], pos
 
 std::optional<std::string> MeasuredCamera::other_size(int width, int height) const {
   if (!size || *size == std::array<std::int64_t, 2>{width, height}) return std::nullopt;
-  return fmt::format("{} x {} px: expected {} x {}, for which camera {} is described (size)", width, height,
-                     (*size)[0], (*size)[1], Node{name, {}}.brief());
+  return fmt::format("{} x {} px: expected {} x {} px, the size of camera {} in the file of cameras", width,
+                     height, (*size)[0], (*size)[1], Node{name, {}}.brief());
 }
 
 const Table<ViewPrior>& fields_of(const ViewPrior*) {
   using C = ViewPrior;
   static const Table<C> table =
       Table<C>("prior",
-               "Prior standard deviations of a camera's description. Its errors are then estimated with the "
-               "shape.")
+               "Prior standard deviations of the errors of a camera's description. With a prior, these "
+               "errors are estimated together with the shape.")
           .field("rotation_std", &C::rotation_std,
                  {.meaning = "Standard deviation of the orientation, about each axis.",
                   .unit = Unit::radian,
@@ -144,8 +142,8 @@ const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
                  {.meaning = "Rotation from the camera's frame (x right, y down, z forward) to the world: "
                              "three rows of a matrix, or a quaternion [w, x, y, z]."})
           .field("gamma", &C::gamma,
-                 {.meaning = "Gamma of the pictures: pixel value is light to the power 1/gamma. Typical: 1 "
-                             "for measurement cameras, 2.2 for others.",
+                 {.meaning = "Gamma of the pictures: a pixel value is light to the power 1/gamma. Typical "
+                             "values are 1 for measurement cameras and 2.2 for other cameras.",
                   .range = between(0.1, 10)})
           .field("size", &C::size,
                  {.meaning = "Width and height of the pictures, px. Pictures of another size are refused.",
@@ -161,7 +159,7 @@ const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
 
 const Table<MeasuredCameras>& fields_of(const MeasuredCameras*) {
   static const Table<MeasuredCameras> table =
-      Table<MeasuredCameras>("cameras", "Measured cameras, one for each picture.")
+      Table<MeasuredCameras>("cameras", "Measured cameras, one per picture.")
           .field("camera", &MeasuredCameras::camera,
                  {.meaning = "Cameras, in the order of the pictures.", .count = {1, 64}, .required = true})
           .check(check_names);

@@ -16,13 +16,13 @@ namespace flexura {
 
 /// A rotation in a file: the rows of a rotation matrix, or a quaternion (w, x, y, z).
 struct RotationConfig {
-  /// The rows of the matrix, or the quaternion, as written in the file and not normalized.
+  /// Rows of the matrix, or the quaternion, as written in the file without normalisation.
   std::variant<std::array<std::array<double, 3>, 3>, std::array<double, 4>> value =
       std::array<double, 4>{1, 0, 0, 0};
 
-  /// Returns the deviation of the written value from a rotation. For a matrix R this is the largest absolute
-  /// value among the entries of R R^T - 1 and the determinant minus 1. For a quaternion this is the deviation
-  /// of the norm from 1.
+  /// Returns the deviation of the written value from a rotation. For a matrix R, this is the largest absolute
+  /// value among the entries of R R^T - 1 and det R - 1. For a quaternion, this is the deviation of its norm
+  /// from 1.
   [[nodiscard]] double error() const;
   /// Returns the rotation nearest to the written matrix, or the rotation of the normalized quaternion.
   [[nodiscard]] Eigen::Matrix3d matrix() const;
@@ -39,8 +39,8 @@ struct Codec<RotationConfig> {
 /// A measured camera in a file, `[[camera]]`: a camera with a fixed lens and a fixed pose.
 struct MeasuredCamera {
   std::string name;                                    ///< Name for messages.
-  double fx = 800;                                     ///< Focal length, px.
-  std::optional<double> fy;                            ///< Focal length, px; default: fx.
+  double fx = 800;                                     ///< Focal length along u, px.
+  std::optional<double> fy;                            ///< Focal length along v, px; default: fx.
   double cx = 319.5, cy = 239.5;                       ///< Principal point, px.
   std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< Distortion k1, k2, p1, p2, k3, in OpenCV's order.
   std::array<double, 3> position = {0, 0, 0};          ///< Position p_WC of the entrance pupil, m.
@@ -54,7 +54,8 @@ struct MeasuredCamera {
   [[nodiscard]] Lens lens() const;
   /// Returns the pose X_WC.
   [[nodiscard]] Pose pose() const;
-  /// Returns an error text for a picture whose size, px, differs from the camera's `size`; otherwise empty.
+  /// Returns an error text if the size of a picture, px, differs from the camera's `size`; otherwise
+  /// std::nullopt.
   [[nodiscard]] std::optional<std::string> other_size(int width, int height) const;
 };
 

@@ -35,7 +35,7 @@ Fault orientation_fault(const MountConfig& mount) {
     return {};
   }
   const Eigen::Vector3d forward = vector(*mount.look_at) - vector(mount.position);
-  if (!(forward.norm() > 0)) return {"look_at", "is the mount's own position: expected another point"};
+  if (!(forward.norm() > 0)) return {"look_at", "is the position of the mount: expected another point"};
   if (!upright(forward))
     return {
         "look_at",
@@ -53,8 +53,9 @@ bool StageConfig::can_move() const {
 }
 
 const Table<SlideConfig>& fields_of(const SlideConfig*) {
-  static const auto table = axis_table<SlideConfig>(
-      "slide", "One axis of a stage; it has no travel by default.", slide_units, between(-1e3, 1e3));
+  static const auto table =
+      axis_table<SlideConfig>("slide", "One axis of a stage. By default, its limits allow no travel.",
+                              slide_units, between(-1e3, 1e3));
   return table;
 }
 
@@ -74,8 +75,8 @@ const Table<StageConfig>& fields_of(const StageConfig*) {
 const Table<MountConfig>& fields_of(const MountConfig*) {
   static const auto table =
       Table<MountConfig>("mount",
-                         "Position and orientation of the camera's head. The orientation is given by "
-                         "`look_at` or `rotation`.")
+                         "Position and orientation of the camera's head. Either `look_at` or `rotation` "
+                         "gives the orientation.")
           .field("position", &MountConfig::position,
                  {.meaning = "Origin of the mount, on the head's pan axis: X, Y, Z.",
                   .unit = Unit::metre,
@@ -83,7 +84,7 @@ const Table<MountConfig>& fields_of(const MountConfig*) {
                   .required = true})
           .field("look_at", &MountConfig::look_at,
                  {.meaning =
-                      "Point at which the camera looks at pan 0 and tilt 0, with +Y upright in its image.",
+                      "Point at which the camera looks at pan 0 and tilt 0. +Y is then upright in the image.",
                   .unit = Unit::metre,
                   .range = place_range,
                   .default_text = "not set"})

@@ -24,14 +24,14 @@ void check_sensor(const SensorConfig& sensor, Reader& reader) {
   for (const auto& [key, spans] : {std::pair{"covered", &sensor.covered}, {"silent", &sensor.silent}})
     for (std::size_t i = 0; i < spans->size(); ++i)
       if (!((*spans)[i][0] < (*spans)[i][1]))
-        reader.problem_at(
-            fmt::format("{}[{}]", key, i),
-            fmt::format("ends at {:.6g} s, not after its beginning: expected [from, to]", (*spans)[i][1]));
+        reader.problem_at(fmt::format("{}[{}]", key, i),
+                          fmt::format("ends at {:.6g} s, which is not after its start: expected [from, to]",
+                                      (*spans)[i][1]));
   const double frame = 1 / sensor.frame_rate;
   if (sensor.exposure > frame) {
-    reader.problem_at("exposure",
-                      fmt::format("takes longer than a frame: expected at most {:.6g} s at {:.6g} frames/s",
-                                  frame, sensor.frame_rate));
+    reader.problem_at(
+        "exposure", fmt::format("is longer than a frame: expected at most {:.6g} s at {:.6g} frames/s", frame,
+                                sensor.frame_rate));
   }
   const bool is_rolling = sensor.readout == Readout::rolling;
   if (is_rolling && sensor.row_time == 0) {
@@ -70,13 +70,13 @@ void add_frames(Table<SensorConfig>& table) {
       .field("drop", &SensorConfig::drop,
              {.meaning = "Fraction of the frames that are lost.", .range = between(0, 1)})
       .field("covered", &SensorConfig::covered,
-             {.meaning = "Intervals [from, to] since the experiment's start in which the lens is covered and "
-                         "pictures are dark.",
+             {.meaning = "Intervals [from, to], s from the experiment's start, in which the lens is covered "
+                         "and pictures are dark.",
               .unit = Unit::second,
               .range = between(0, 1e6)})
       .field("silent", &SensorConfig::silent,
              {.meaning =
-                  "Intervals [from, to] since the experiment's start in which the camera does not answer.",
+                  "Intervals [from, to], s from the experiment's start, in which the camera does not answer.",
               .unit = Unit::second,
               .range = between(0, 1e6)})
       .field(
@@ -93,8 +93,8 @@ void add_frames(Table<SensorConfig>& table) {
 void add_effects(Table<SensorConfig>& table) {
   table
       .field("vignetting", &SensorConfig::vignetting,
-             {.meaning = "Fraction of the light lost in the image's corners. It grows with the square of the "
-                         "distance from the middle.",
+             {.meaning = "Fraction of the light lost in the image's corners. The loss increases with the "
+                         "square of the distance from the middle.",
               .range = between(0, 1)})
       .field("psf", &SensorConfig::psf,
              {.meaning = "Standard deviation of the Gaussian blur of lens and pixel, px.",

@@ -12,8 +12,8 @@ namespace flexura {
 /// Channels of a pixel: one gray value, or red, green and blue.
 enum class PixelKind { gray, color };
 
-/// Readout of an image's rows. Global: all rows at once. Rolling: one row after another. Interlaced: even
-/// rows first, odd rows half a frame later.
+/// Readout of an image's rows. `global`: all rows at once. `rolling`: one row after another. `interlaced`:
+/// even rows first, odd rows half a frame later.
 enum class Readout { global, rolling, interlaced };
 
 /// Sensor of a camera, which converts light on the image plane to pixel values. All degrading effects are off
@@ -31,8 +31,8 @@ struct SensorConfig {
   /// Intervals [from, to), s, in which the lens is covered (`covered`) or the camera does not answer
   /// (`silent`).
   std::vector<std::array<double, 2>> covered = {}, silent = {};
-  double gain = 1;  ///< Factor on the light before readout, which also amplifies shot noise.
-  /// Electrons at full scale and gain 1, which determine the shot noise. 0: no shot noise.
+  double gain = 1;  ///< Factor on the light before readout. It also amplifies shot noise.
+  /// Number of electrons at full scale and gain 1. It determines the shot noise; 0: no shot noise.
   double full_well = 0;
   double read_noise = 0;  ///< Standard deviation of the read noise, in values of an 8-bit image.
   double psf = 0;         ///< Standard deviation of the Gaussian blur of lens and pixels, px.
@@ -48,8 +48,8 @@ struct SensorConfig {
   [[nodiscard]] constexpr int white() const { return (1 << bits) - 1; }
 };
 
-/// Returns the delay from the start of the frame to the start of row v's exposure, s. With a rolling shutter
-/// the delay is v * row_time. It is half a frame for odd rows of an interlaced image, otherwise 0.
+/// Returns the delay from the start of the frame to the start of row v's exposure, s. With a rolling shutter,
+/// the delay is v * row_time. For odd rows of an interlaced image, it is half a frame. Otherwise it is 0.
 [[nodiscard]] double row_delay(const SensorConfig& sensor, int v);
 /// Returns the largest row delay of a frame, s.
 [[nodiscard]] double last_row_delay(const SensorConfig& sensor);
@@ -59,11 +59,11 @@ struct FrameTimes {
   double start = 0;     ///< Start of the first row's exposure, s.
   double middle = 0;    ///< Mean of `start` and `end`, s.
   double end = 0;       ///< End of the last row's exposure, s.
-  double received = 0;  ///< end + delay, s.
+  double received = 0;  ///< Arrival of the frame: end + delay, s.
 };
 /// Returns the times of a frame that starts at time `start`, s.
 [[nodiscard]] FrameTimes times_of_frame_at(const SensorConfig& sensor, double start);
-/// Returns the times of frame number `frame`, counted from 0, which starts at frame / frame_rate.
+/// Returns the times of frame number `frame`, counted from 0. The frame starts at frame / frame_rate.
 [[nodiscard]] FrameTimes frame_times(const SensorConfig& sensor, std::int64_t frame);
 
 /// Returns whether a time, s, is in one of the intervals [from, to), s.

@@ -76,7 +76,7 @@ TEST(Sensor, ExposesWithinAFrame) {
   EXPECT_THAT(problems_of({member("frame_rate", 50.0), member("exposure", 0.02)}), IsEmpty());
   EXPECT_THAT(
       problems_of({member("frame_rate", 50.0), member("exposure", 0.0201)}),
-      ElementsAre(HasSubstr("exposure: takes longer than a frame: expected at most 0.02 s at 50 frames/s")));
+      ElementsAre(HasSubstr("exposure: is longer than a frame: expected at most 0.02 s at 50 frames/s")));
 }
 
 TEST(Sensor, ReadsTheRowsOfARollingShutterWithinAFrame) {
@@ -99,7 +99,7 @@ TEST(Sensor, HasSpansThatEndAfterTheirBeginning) {
   for (const std::string key : {"covered", "silent"}) {
     EXPECT_THAT(problems(key, {{0, 1}, {0.5, 2}}), IsEmpty());
     EXPECT_THAT(problems(key, {{0, 1}, {2, 2}}),
-                ElementsAre(HasSubstr(key + "[1]: ends at 2 s, not after its beginning")));
+                ElementsAre(HasSubstr(key + "[1]: ends at 2 s, which is not after its start")));
     EXPECT_THAT(problems(key, {{-1, 1}}), ElementsAre(HasSubstr(key)));
   }
   const std::vector<std::array<double, 2>> spans = {{1, 2}, {4, 5}};

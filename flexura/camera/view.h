@@ -13,24 +13,25 @@ namespace flexura {
 /// image.
 struct View {
   Lens lens{Intrinsics{}};
-  Pose X_WC;  ///< Pose of C, position in m. C's origin is the entrance pupil; x right, y down, z forward.
+  /// Pose of C, position in m. C's origin is the entrance pupil. Its axes are x right, y down, z forward.
+  Pose X_WC;
   int width = 640;   ///< Width of the image, px.
   int height = 480;  ///< Height of the image, px.
 
-  /// Returns the pixel of a point in W, m; the pixel may be outside the image. Empty if the lens cannot image
-  /// the point.
+  /// Returns the pixel of a point in W, m. The pixel may be outside the image. Returns std::nullopt if the
+  /// lens cannot image the point.
   [[nodiscard]] std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_WP) const {
     return lens.project(X_WC.inverse() * p_WP);
   }
-  /// Returns the vector in W, perpendicular to the optical axis, that a pixel difference, px, corresponds to
-  /// at depth 1 m under parallel projection.
+  /// Returns the vector in W, perpendicular to the optical axis, to which a pixel difference, px, corresponds
+  /// under parallel projection at a depth of 1 m.
   [[nodiscard]] Eigen::Vector3d parallel_way(const Eigen::Vector2d& pixels) const {
     const Intrinsics& by = lens.intrinsics();
     return X_WC.rotation * Eigen::Vector3d(pixels.x() / by.fx, pixels.y() / by.fy, 0);
   }
 };
 
-/// Prior standard deviations of the errors in a camera's description; 0: no error.
+/// Prior standard deviations of the errors of a camera's description; 0: no error.
 struct ViewPrior {
   double rotation_std = 0;  ///< Standard deviation of the orientation error about each axis, rad.
   double focal_std = 0;     ///< Relative standard deviation of the focal lengths.

@@ -54,13 +54,13 @@ const Table<ZoomRow>& fields_of(const ZoomRow*) {
   static const auto table =
       Table<ZoomRow>("zoom row", "A measured zoom position.")
           .field("ratio", &ZoomRow::ratio,
-                 {.meaning =
-                      "Zoom ratio: focal length over the focal length at ratio 1. Increases from row to row.",
+                 {.meaning = "Zoom ratio: focal length divided by the focal length at ratio 1. It must "
+                             "increase from row to row.",
                   .range = above_up_to(0, 1e4),
                   .required = true})
           .field("count", &ZoomRow::count,
-                 row_spec("Position of the zoom motor. With it, zoom positions are counts instead of ratios. "
-                          "It increases, or decreases, from row to row.",
+                 row_spec("Position of the zoom motor. If it is given, zoom positions are motor positions "
+                          "instead of ratios. It must either increase or decrease from row to row.",
                           {.min = -1e9, .max = 1e9}, "not set"))
           .field("fx", &ZoomRow::fx,
                  row_spec("Horizontal focal length, px.", focal_length_range, "the lens's times the ratio"))
@@ -94,7 +94,8 @@ const Table<LensConfig>& fields_of(const LensConfig*) {
           .field("zoom", &LensConfig::zoom,
                  {.meaning = "Measured zoom positions, as tables [[camera.lens.zoom]].",
                   .count = {0, max_rows},
-                  .default_text = "none: focal length proportional to the ratio, the rest constant"})
+                  .default_text =
+                      "none: the focal length is proportional to the ratio, everything else is constant"})
           .check([](const LensConfig& config, Reader& reader) {
             if (const auto fault = ZoomTable::fault(config)) reader.problem_at(fault->path, fault->what);
           });
@@ -104,20 +105,24 @@ const Table<LensConfig>& fields_of(const LensConfig*) {
 std::optional<ZoomTable::Fault> ZoomTable::fault(const LensConfig& config) {
   const auto& rows = config.zoom;
   if (rows.empty()) return std::nullopt;
-  if (rows.size() == 1) return Fault{"zoom", "has one row: expected at least two, or none for a linear zoom"};
+  if (rows.size() == 1)
+    return Fault{"zoom", "has one row: expected at least two rows, or no rows for a linear zoom"};
   const Intrinsics one = lens_at_one(config, 1, 1);
   const bool counts = rows[0].count.has_value();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto at = [i](const char* key) { return fmt::format("zoom[{}].{}", i, key); };
     if (rows[i].count.has_value() != counts)
-      return Fault{at("count"), "expected a count in all rows or none"};
+      return Fault{at("count"), "expected a count in all rows or in no row"};
     if (i == 0) continue;
     const Intrinsics before = lens_at(rows[i - 1], one), here = lens_at(rows[i], one);
-    if (!(rows[i].ratio > rows[i - 1].ratio)) return Fault{at("ratio"), "expected a rising ratio"};
-    if (!(here.fx > before.fx)) return Fault{at("fx"), "expected rising focal lengths"};
-    if (!(here.fy > before.fy)) return Fault{at("fy"), "expected rising focal lengths"};
+    if (!(rows[i].ratio > rows[i - 1].ratio))
+      return Fault{at("ratio"), "expected a ratio that increases from row to row"};
+    if (!(here.fx > before.fx))
+      return Fault{at("fx"), "expected focal lengths that increase from row to row"};
+    if (!(here.fy > before.fy))
+      return Fault{at("fy"), "expected focal lengths that increase from row to row"};
     if (counts && !((*rows[i].count - *rows[i - 1].count) * (*rows[1].count - *rows[0].count) > 0))
-      return Fault{at("count"), "expected counts that all rise or all fall"};
+      return Fault{at("count"), "expected counts that increase in all rows or decrease in all rows"};
   }
   return std::nullopt;
 }

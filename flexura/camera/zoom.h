@@ -15,15 +15,16 @@
 
 namespace flexura {
 
-/// A row of the zoom table: a measured zoom position, `[[camera.lens.zoom]]`. Omitted values follow from the
-/// lens at ratio 1.
+/// A row of the zoom table: a measured zoom position, `[[camera.lens.zoom]]`. Omitted values are derived from
+/// the lens at ratio 1.
 struct ZoomRow {
-  double ratio = 1;                      ///< Zoom ratio: focal length over the focal length at ratio 1; > 0.
-  std::optional<double> count;           ///< Position of the zoom motor.
-  std::optional<double> fx, fy, cx, cy;  ///< Focal lengths and principal point, px. Default: those at ratio
-                                         ///< 1, with fx and fy times the ratio.
+  double ratio = 1;             ///< Zoom ratio: focal length divided by the focal length at ratio 1; > 0.
+  std::optional<double> count;  ///< Position of the zoom motor.
+  /// Focal lengths and principal point, px. Default: the values at ratio 1; for fx and fy, the values at
+  /// ratio 1 times the ratio.
+  std::optional<double> fx, fy, cx, cy;
   std::optional<std::array<double, 5>>
-      distortion;  ///< Distortion k1, k2, p1, p2, k3; default: as at ratio 1.
+      distortion;  ///< Distortion k1, k2, p1, p2, k3; default: the values at ratio 1.
 };
 
 /// A zoom lens in a file: parameters at zoom ratio 1 and their change with zoom.
@@ -38,12 +39,12 @@ struct LensConfig {
 const Table<ZoomRow>& fields_of(const ZoomRow*);
 const Table<LensConfig>& fields_of(const LensConfig*);
 
-/// The intrinsics of a zoom lens as a function of the zoom position. A position is a motor count if the rows
-/// of the table have counts, otherwise the zoom ratio.
+/// The intrinsics of a zoom lens as a function of the zoom position. A position is a motor position if the
+/// rows of the table have counts, otherwise a zoom ratio.
 ///
-/// Without rows the zoom is linear, as the paper assumes: f = f_1 ratio, with constant principal point and
+/// Without rows, the zoom is linear, as the paper assumes: f = f_1 ratio, with constant principal point and
 /// distortion. With rows, each parameter is a monotone cubic spline through the rows. The splines are
-/// functions of the motor count or, without counts, of the logarithm of the ratio. Focal lengths are
+/// functions of the motor position or, without counts, of the logarithm of the ratio. Focal lengths are
 /// interpolated as logarithms, so that rows of a linear zoom reproduce the linear zoom exactly. All
 /// parameters have continuous derivatives and stay within the range of the two neighbouring rows.
 class ZoomTable {
@@ -52,35 +53,36 @@ class ZoomTable {
   /// error.
   ZoomTable(const LensConfig& config, std::int64_t width, std::int64_t height);
 
-  /// An error in a lens, with the place of the error in the lens's table.
+  /// An error in a lens, with its path in the lens's table.
   struct Fault {
-    std::string path, what;  ///< Place of the error, such as "zoom[1].ratio", and the error text.
+    std::string path, what;  ///< Path of the error, such as "zoom[1].ratio", and the error text.
   };
-  /// Returns the first error in the rows; empty if there is none. There must be no row or at least two.
-  /// Ratios and focal lengths must increase from row to row. Counts must increase or decrease strictly, and
-  /// all rows or none must have a count.
+  /// Returns the first error in the rows; std::nullopt for valid rows. There must be no row or at least two
+  /// rows. Ratios and focal lengths must increase from row to row. Either all rows or no rows have a count.
+  /// Counts must either increase or decrease strictly.
   [[nodiscard]] static std::optional<Fault> fault(const LensConfig& config);
 
-  /// Smallest and largest zoom position: the range of the rows or, without rows, all positive numbers.
+  /// Returns the smallest and the largest zoom position: the range of the rows or, without rows, all positive
+  /// numbers.
   [[nodiscard]] double first() const { return first_; }
   [[nodiscard]] double last() const { return last_; }
   /// Returns whether the zoom is linear: the table has no rows.
   [[nodiscard]] bool is_linear() const { return curves_.empty(); }
 
-  /// Returns the intrinsics at the position `zoom`. Positions beyond first() or last() by rounding only (1e-9
-  /// relative) are clamped. Throws std::out_of_range for positions further outside, which the head's limits
-  /// prevent.
+  /// Returns the intrinsics at the position `zoom`. Positions that are beyond first() or last() because of
+  /// rounding (1e-9 relative) are clamped. Throws std::out_of_range for positions further outside; the head's
+  /// limits exclude them.
   [[nodiscard]] Intrinsics at(double zoom) const;
   /// Returns the derivative of the intrinsics with respect to the zoom position, in the order of
   /// `intrinsics_count`. Throws std::out_of_range like at().
   [[nodiscard]] Eigen::Vector<double, intrinsics_count> slope(double zoom) const;
-  /// Returns the derivative of each intrinsic parameter at `zoom` with respect to the same parameter of row
+  /// Returns the derivative of each intrinsic parameter at `zoom` with respect to this parameter in row
   /// `row`. The row's parameter may be written in the file or derived from the lens at ratio 1. Ratios and
   /// counts are constant. Throws std::out_of_range like at(), and for a row that does not exist.
   [[nodiscard]] Eigen::Vector<double, intrinsics_count> by_row(double zoom, std::size_t row) const;
-  /// Returns the derivative of each intrinsic parameter at `zoom` with respect to the same parameter at ratio
-  /// 1. Without rows the dependence is direct; otherwise it is through the rows that omit the parameter.
-  /// Throws std::out_of_range like at().
+  /// Returns the derivative of each intrinsic parameter at `zoom` with respect to this parameter at ratio 1.
+  /// With a table, only rows that omit the parameter depend on its value at ratio 1. Throws std::out_of_range
+  /// like at().
   [[nodiscard]] Eigen::Vector<double, intrinsics_count> by_lens(double zoom) const;
   /// Returns the zoom ratio at `zoom`, interpolated like the focal lengths. Throws std::out_of_range like
   /// at().

@@ -217,11 +217,11 @@ TEST(Zoom, RefusesATableThatIsNone) {
   EXPECT_THAT(problem([](Rows& rows) { rows[3].count.reset(); }),
               HasSubstr("zoom[3].count: expected a count in all rows"));
   EXPECT_THAT(problem([](Rows& rows) { rows[3].ratio = 3; }),
-              HasSubstr("zoom[3].ratio: expected a rising ratio"));
+              HasSubstr("zoom[3].ratio: expected a ratio that increases from row to row"));
   EXPECT_THAT(problem([](Rows& rows) { rows[3].count = 0; }),
-              HasSubstr("zoom[3].count: expected counts that all rise"));
-  EXPECT_THAT(problem([](Rows& rows) { rows[3].fx = 100; }), HasSubstr("zoom[3].fx: expected rising focal"));
-  EXPECT_THAT(problem([](Rows& rows) { rows[3].fy = 100; }), HasSubstr("zoom[3].fy: expected rising focal"));
+              HasSubstr("zoom[3].count: expected counts that increase in all rows"));
+  EXPECT_THAT(problem([](Rows& rows) { rows[3].fx = 100; }), HasSubstr("zoom[3].fx: expected focal"));
+  EXPECT_THAT(problem([](Rows& rows) { rows[3].fy = 100; }), HasSubstr("zoom[3].fy: expected focal"));
 }
 
 }  // namespace

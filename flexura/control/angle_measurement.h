@@ -7,26 +7,27 @@
 
 namespace flexura {
 
-/// Quantities that a law measures to get the angles.
+/// Quantities that are measured to determine the angles.
 enum class AngleReading : std::uint8_t {
   angles,  ///< theta and q at each node.
-  planes,  ///< Angles in two parallel views of each point of the arm (PlaneObserver).
+  /// Angles of the arm's direction in two parallel projections, at each point of the arm (PlaneObserver).
+  planes,
 };
 
-/// Measurement of a distributed arm's angles for a law without exact angles.
+/// Measurement of a distributed arm's angles, for a law that does not know the exact angles.
 struct AngleMeasurement {
   double step = 0.02;  ///< Time between measurements, s; > 0.
   double delay = 0;    ///< Delay of each measurement, s; >= 0.
   /// Standard deviations of the noise of theta and q at each node, or of alpha_1 and alpha_2 at each point,
   /// rad; >= 0.
   std::array<double, 2> noise = {0, 0};
-  std::uint64_t seed = 1;  ///< Seed of the noise; equal seeds give equal numbers.
+  std::uint64_t seed = 1;  ///< Seed of the random noise; equal seeds give equal noise.
   AngleReading reading = AngleReading::angles;
 };
 
 /// Measures the coordinates of a DistributedArm at the times 0, step, 2 step, ..., with a delay. Angles at
-/// the nodes have normally distributed noise, independent from node to node and from time to time. Before the
-/// first measurement the state is that of the first one.
+/// the nodes have normally distributed noise, independent from node to node and from time to time. The state
+/// before time 0 counts as equal to that at time 0.
 class MeasuredCoordinates {
  public:
   /// `nodes`: number of coordinates of each angle of the arm. Throws std::invalid_argument for numbers out of
@@ -39,7 +40,7 @@ class MeasuredCoordinates {
   void take(const Eigen::VectorXd& x, const Eigen::VectorXd& v);
   /// Returns the coordinates of the newest measurement; empty before the first measurement.
   [[nodiscard]] const Eigen::VectorXd& seen() const { return seen_; }
-  /// Returns the noise with variance 1 for number `which` of the newest measurement.
+  /// Returns a random number with variance 1: the noise of number `which` in the newest measurement.
   [[nodiscard]] double deviate(std::uint64_t which) const;
 
  private:

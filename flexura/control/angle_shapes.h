@@ -7,10 +7,11 @@ namespace flexura {
 
 /// Functions of arc length that represent an angle of a distributed arm by finitely many coordinates.
 enum class AngleBasis {
-  polynomial,  ///< One polynomial along the whole arm; the coordinates are its values at Gauss-Legendre
-               ///< nodes.
-  sections,  ///< Linear in every section; the coordinates are the values at the sections' ends (and at a free
-             ///< base).
+  /// One polynomial along the whole arm. The coordinates are the polynomial's values at Gauss-Legendre nodes.
+  polynomial,
+  /// Linear in every section. The coordinates are the angle's values at the sections' ends, and at the base
+  /// if it is free.
+  sections,
 };
 
 /// Shape functions of an angle, and the Gauss-Legendre points of each section for integrals along the
@@ -19,27 +20,28 @@ enum class AngleBasis {
 struct AngleShapes {
   std::vector<double> lengths;  ///< Lengths of the sections, m.
   AngleBasis basis = AngleBasis::polynomial;
-  bool is_clamped = true;  ///< The angle at s = 0 is given and not a coordinate.
-  Eigen::VectorXd nodes;   ///< Nodes, m of arc length: the coordinates are the angle's values at the nodes.
+  bool is_clamped = true;  ///< Whether the angle at s = 0 is given instead of a coordinate.
+  /// Arc lengths of the nodes, m. The coordinates are the angle's values at the nodes.
+  Eigen::VectorXd nodes;
   Eigen::VectorXd s,
-      weights;  ///< Positions of the points, m of arc length, and their weights in integrals, m.
-  std::vector<std::size_t> section;   ///< Section of each point, counted from 0.
-  Eigen::MatrixXd values, slopes;     ///< P_a and dP_a/ds (1/m): a row per point, a column per coordinate.
-  Eigen::VectorXd base, base_slopes;  ///< Function base(s) of the clamp and its derivative (1/m) at the
-                                      ///< points; 0 if the base is free.
+      weights;  ///< Arc lengths of the quadrature points, and their weights in integrals, m.
+  std::vector<std::size_t> section;  ///< Section of each point, counted from 0.
+  Eigen::MatrixXd values, slopes;    ///< P_a and dP_a/ds (1/m): one row per point, one column per coordinate.
+  /// The clamp's function base(s) and its derivative (1/m) at the points; 0 if the base is free.
+  Eigen::VectorXd base, base_slopes;
   /// (running f)(s_j) is the integral of f from the base to s_j, with f given at the points. The integral is
   /// exact for polynomials of degree points - 1 in each section.
   Eigen::MatrixXd running;
 
-  /// Returns P_a at the arc length `at`, m: a column per coordinate, and the clamp's function as the last
-  /// column.
+  /// Returns P_a at the arc length `at`, m: one column per coordinate. The last column is the clamp's
+  /// function.
   [[nodiscard]] Eigen::RowVectorXd at(double at) const;
 };
 
 /// Returns shapes with `points` >= 1 quadrature points per section. `nodes` >= 1 is the number of coordinates
-/// in the polynomial basis. The basis `sections` has one coordinate per section, and one at a free base.
-/// Throws std::invalid_argument for smaller numbers, no sections, or a length that is not positive and
-/// finite.
+/// in the polynomial basis. The basis `sections` has one coordinate per section, and another one if the base
+/// is free. Throws std::invalid_argument for smaller numbers, no sections, or a length that is not positive
+/// and finite.
 [[nodiscard]] AngleShapes angle_shapes(const std::vector<double>& lengths, AngleBasis basis, bool is_clamped,
                                        int nodes, int points);
 

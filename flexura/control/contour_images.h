@@ -12,17 +12,17 @@ namespace flexura {
 
 /// Points of the two contours of an arm: the curves along which one camera's rays touch the arm's surface.
 /// Each cross-section has two points (docs/control.md, eq. 19a and 19b). The first is right of the direction
-/// from base to tip in the picture, the second left. All values are NaN where no rays touch the
-/// cross-section, because the arm points at the camera.
+/// from base to tip in the picture, the second left. Where the arm points at the camera, no rays touch the
+/// cross-section, and all values are NaN.
 struct ContourImage {
   Eigen::Matrix2Xd pixels;   ///< Pixels of the points, px, a column per point.
   Eigen::Matrix2Xd normals;  ///< Unit normals of the contours in the picture, away from the arm.
   Eigen::Matrix3Xd places;   ///< Positions p_CP of the points, m.
-  Eigen::Matrix3Xd arms;     ///< Vectors from the cross-section's middle to P, in C, m.
-  /// Derivatives of the contour's motion along `normals` with respect to p_CP of the surface at P, px/m.
+  Eigen::Matrix3Xd arms;     ///< Vectors from the cross-section's middle to the points P, in C, m.
+  /// Derivatives of the contour's motion along `normals` with respect to p_CP of the surface point, px/m.
   Eigen::Matrix3Xd slopes;
   /// Derivatives of the motion of P's pixel along the contour with respect to p_CP, px/m. The positive
-  /// direction is the normal turned from v to u.
+  /// direction is the normal, rotated by 90 degrees from +v to +u.
   Eigen::Matrix3Xd slides;
 
   /// Returns true if the contour has point i.
@@ -38,13 +38,13 @@ class ContourImages {
 
   /// Returns the number of points in one image: two per share.
   [[nodiscard]] Eigen::Index count() const { return 2 * static_cast<Eigen::Index>(points_.size()); }
-  /// Returns the number of columns of derivatives: each section's bend_x, bend_y (rad), stretch.
+  /// Returns the number of columns of derivatives: bend_x, bend_y (rad) and stretch of each section.
   [[nodiscard]] Eigen::Index columns() const { return 3 * static_cast<Eigen::Index>(arm_.sections.size()); }
 
   /// Sets the arm's state. Throws std::invalid_argument if the state does not fit the arm.
   void set(const ArmState& state);
-  /// Computes the contours of the arm in its state. Returns false if the lens does not show a point of the
-  /// contours. Requires set().
+  /// Computes the contours of the arm in its state. Returns false if a point of the contours is outside the
+  /// lens's valid field. Requires set().
   [[nodiscard]] bool see(const View& view, ContourImage& image) const;
   // NOLINTNEXTLINE(performance-unnecessary-value-param): an Eigen::Ref is written through.
   /// Computes the derivatives of the contours' motion in `view` along their normals, with respect to the
@@ -52,8 +52,8 @@ class ContourImages {
   void derive(const View& view, const ContourImage& image, Eigen::Ref<Eigen::MatrixXd> by_state);
   // NOLINTBEGIN(performance-unnecessary-value-param): as above.
   /// Computes the derivatives for the motion along `directions` (unit vectors, a column per point) instead of
-  /// the normals. Here a point moves with the surface point that is at the contour now. Rows are zero where a
-  /// direction is not a number.
+  /// the normals. Here a contour point moves with the surface point that is currently there. Rows are zero
+  /// where a direction is not finite.
   void derive(const View& view, const ContourImage& image,
               const Eigen::Ref<const Eigen::Matrix2Xd>& directions, Eigen::Ref<Eigen::MatrixXd> by_state);
   // NOLINTEND(performance-unnecessary-value-param)
@@ -80,17 +80,18 @@ class ContourImages {
 };
 
 /// Computes the distances of the measured edges from the desired edges, perpendicular to the edges, px. All
-/// points are in the order of at.pixels. The measured edges have the normals of the contours `at`, the
-/// desired edges `desired_normals`. Each distance is along the direction half-way between the two normals,
-/// which is how a uniformly rotating piece of edge moves. It is 0 where the measured edge, the desired edge
-/// or the contour does not exist. Throws std::invalid_argument if the numbers of points differ.
+/// points are in the order of at.pixels. The measured edges have the normals of the contours `at`; the
+/// desired edges have `desired_normals`. Each distance is along the direction half-way between the two
+/// normals, because a uniformly rotating piece of edge moves in this direction. The distance is 0 where the
+/// measured edge, the desired edge or the contour does not exist. Throws std::invalid_argument if the numbers
+/// of points differ.
 // NOLINTBEGIN(performance-unnecessary-value-param): an Eigen::Ref is written through.
 void contour_error(const ContourImage& at, const Eigen::Ref<const Eigen::Matrix2Xd>& seen,
                    const Eigen::Ref<const Eigen::Matrix2Xd>& desired,
                    const Eigen::Ref<const Eigen::Matrix2Xd>& desired_normals,
                    Eigen::Ref<Eigen::VectorXd> error);
-/// Computes, for each point, the direction half-way between two normals. The result is not a number if one of
-/// the normals is not, or if the two are opposite.
+/// Computes, for each point, the direction half-way between two normals. The result is NaN if a normal is NaN
+/// or if the two normals are opposite.
 void halfway_normals(const Eigen::Ref<const Eigen::Matrix2Xd>& one,
                      const Eigen::Ref<const Eigen::Matrix2Xd>& other, Eigen::Ref<Eigen::Matrix2Xd> middle);
 // NOLINTEND(performance-unnecessary-value-param)

@@ -12,20 +12,20 @@
 
 namespace flexura {
 
-/// An arm with distributed mass, weight and elasticity: the plant of the theory in the paper's section 2. Two
+/// An arm with distributed mass, weight and elasticity: the plant in the theory of the paper's section 2. Two
 /// continuous angles give the arm's direction (docs/control.md, eq. 1).
 struct DistributedArmModel {
   std::vector<double> lengths = {1};  ///< Lengths of the sections at rest, m: l_i0.
   bool has_variable_lengths =
-      false;           ///< Whether the sections have lengths l_i0 + u_i(t), with u_i as further coordinates.
-  double density = 1;  ///< rho: mass per length of the arm at rest, kg/m; > 0.
+      false;  ///< Whether the sections have lengths l_i0 + u_i(t), with u_i as additional coordinates.
+  double density = 1;                       ///< rho: mass per length of the arm at rest, kg/m; > 0.
   Eigen::Vector3d gravity = {0, -9.81, 0};  ///< Gravity in W, m/s^2, in any direction.
   double bending_stiffness = 0;             ///< EI, N m^2; >= 0.
   double axial_stiffness = 0;               ///< EA of variable lengths, N; >= 0.
   double damping =
-      0;  ///< c: the medium dissipates the power c |de/dt|^2 per length (W/m, with rad/s), N s; >= 0.
+      0;  ///< Damping coefficient c, N s; >= 0. The medium dissipates the power c |de/dt|^2 per length, W/m.
   double length_damping = 0;  ///< Damping of the rates of the lengths, N s/m; >= 0.
-  /// theta and q at the clamped base, rad; std::nullopt: the arm turns freely about its base point.
+  /// theta and q at the clamped base, rad; std::nullopt: the arm rotates freely about its base point.
   std::optional<std::array<double, 2>> clamp = std::array<double, 2>{0, 0};
   AngleBasis basis = AngleBasis::polynomial;  ///< Basis for both angles.
   int nodes = 10;                             ///< Number of coordinates per angle (polynomial basis).
@@ -34,17 +34,17 @@ struct DistributedArmModel {
 
 /// Equations of motion of a distributed arm. The arm is discretised along s before Lagrange's equations are
 /// derived, so that energies and forces are exactly consistent (docs/control.md, "The distributed arm"). The
-/// coordinates x are those of theta (rad), then those of q (rad), see AngleShapes. With variable lengths the
-/// sections' u_i (m) follow. |q| must stay below pi/2, where the angles are singular. After construction,
-/// only functions that return vectors or matrices by value allocate.
+/// coordinates x are those of theta (rad), then those of q (rad), then u_i (m) of variable lengths (see
+/// AngleShapes). The magnitude of q must remain below pi/2, where the angles are singular. After
+/// construction, only functions that return vectors or matrices by value allocate memory.
 class DistributedArm {
  public:
-  /// Throws std::invalid_argument for numbers out of their range or not finite, or fewer points than nodes.
+  /// Throws std::invalid_argument for numbers that are out of range or not finite, and for fewer points than
+  /// nodes.
   explicit DistributedArm(const DistributedArmModel& model);
 
   [[nodiscard]] const DistributedArmModel& model() const { return model_; }
-  /// Returns the shape functions of both angles; "the points" in this class are the quadrature points, by arc
-  /// length s.
+  /// Returns the shape functions of both angles. In this class, "the points" are their quadrature points.
   [[nodiscard]] const AngleShapes& shapes() const { return shapes_; }
   /// Returns the number of all coordinates.
   [[nodiscard]] Eigen::Index size() const { return size_; }
@@ -59,9 +59,10 @@ class DistributedArm {
 
   // For the current state:
 
-  [[nodiscard]] double kinetic_energy() const;  ///< T, J.
-  [[nodiscard]] double gravity_energy() const;  ///< V_g, J; the zero is all mass at the base.
-  [[nodiscard]] double elastic_energy() const;  ///< V_e, J.
+  [[nodiscard]] double kinetic_energy() const;  ///< Returns the kinetic energy T, J.
+  /// Returns the potential energy of gravity V_g, J. It is 0 if all mass is at the base.
+  [[nodiscard]] double gravity_energy() const;
+  [[nodiscard]] double elastic_energy() const;  ///< Returns the elastic energy V_e, J.
   /// Returns the dissipated power, W; >= 0.
   [[nodiscard]] double damping_power() const { return rates_.dot(damping_force_); }
   /// Returns dV_g/dx, a generalized force (N m for angles, N for lengths).
@@ -70,7 +71,7 @@ class DistributedArm {
   [[nodiscard]] const Eigen::VectorXd& elastic_gradient() const { return elastic_gradient_; }
   /// Returns the Hessian of V_g + V_e.
   [[nodiscard]] Eigen::MatrixXd stiffness() const;
-  /// Returns the mass matrix of the coordinates, size() x size(), symmetric: T = 1/2 v . M v.
+  /// Returns the mass matrix M of the coordinates, size() x size(), symmetric: T = 1/2 v . M v.
   [[nodiscard]] Eigen::MatrixXd mass_matrix() const;
   /// Computes the acceleration d^2 x/dt^2 under the generalized forces `force`. Returns false if the
   /// coordinates are singular (|q| = pi/2) or a number is not finite.
@@ -80,7 +81,7 @@ class DistributedArm {
   [[nodiscard]] const Eigen::VectorXd& theta() const { return theta_; }
   /// Returns the elevation q at the points shapes().s, rad.
   [[nodiscard]] const Eigen::VectorXd& q() const { return q_; }
-  /// Returns the arm's direction e at the points shapes().s, a column per point.
+  /// Returns the arm's direction e at the points shapes().s, one column per point.
   [[nodiscard]] const Eigen::Matrix3Xd& direction() const { return e_; }
   /// Returns the ratio of each section's length to its length at rest.
   [[nodiscard]] const Eigen::VectorXd& stretch() const { return stretch_; }
@@ -110,19 +111,19 @@ class DistributedArm {
 /// Integrates the arm's motion over time, with a force that may depend on x and v.
 class DistributedMotion {
  public:
-  /// Computes the generalized forces Q on `arm`, which is set to the state (x, v). Returns a power (W) that
-  /// is integrated over time, for example the dissipation of a law's damping.
+  /// Computes the generalized forces Q on `arm`, which is set to the state (x, v). Returns a power, W, which
+  /// is integrated over time: for example, the power dissipated by a law's damping.
   using Force = std::function<double(double t, const DistributedArm& arm, const Eigen::VectorXd& x,
                                      const Eigen::VectorXd& v, Eigen::VectorXd& Q)>;
-  /// `tolerance`: for (x; v) and both integrals. Until start() the arm is at rest at x = 0, where all angles
-  /// are 0.
+  /// `tolerance` applies to (x; v) and both integrals. Before start(), the arm is at rest with all
+  /// coordinates 0.
   DistributedMotion(DistributedArm arm, Force force, const OdeTolerance& tolerance = {});
 
-  /// Starts from rest at x at time 0.
+  /// Sets the time to 0 and the arm to rest at the coordinates `x`.
   void start(const Eigen::VectorXd& x);
-  /// Advances to the time `until`, s. The integrator calls go_on() before every step and stops if it returns
-  /// false; an empty go_on never stops it. Returns false if go_on() stopped it, the integrator failed
-  /// (DormandPrince), or the arm reached a singularity.
+  /// Advances to the time `until`, s. The integrator calls go_on() before every step and stops if go_on()
+  /// returns false. An empty go_on never stops it. Returns false if go_on() stopped the integration, if the
+  /// integrator failed (DormandPrince), or if the arm reached a singularity.
   [[nodiscard]] bool advance(double until, const std::function<bool()>& go_on = {});
 
   /// Returns the time since the start, s.
@@ -135,7 +136,7 @@ class DistributedMotion {
   [[nodiscard]] const DistributedArm& arm() const { return arm_; }
   /// Returns the energy that the arm's own damping has dissipated since the start, J.
   [[nodiscard]] double damped() const { return y_[2 * arm_.size()]; }
-  /// Returns the integral since the start of the powers that the force returned, J.
+  /// Returns the integral of the powers that the force function returned, since the start, J.
   [[nodiscard]] double summed() const { return y_[2 * arm_.size() + 1]; }
 
  private:

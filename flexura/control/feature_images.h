@@ -13,8 +13,8 @@
 
 namespace flexura {
 
-/// Features of one arm's images for many states, without allocation after the first use. The derivatives
-/// follow from the camera models and the backbone's Jacobian.
+/// Computes features of an arm's images for many states, without memory allocation after the first use.
+/// Computes the derivatives from the camera models and the backbone's Jacobian.
 class FeatureImages {
  public:
   /// Throws std::invalid_argument for a share outside [0, 1], no features, or moments of fewer than two
@@ -25,12 +25,12 @@ class FeatureImages {
   /// Returns the images of the features' points, in the last state.
   [[nodiscard]] const PointImages& points() const { return points_; }
 
-  /// Computes the features in all cameras, camera by camera. Returns false if a lens does not show a needed
-  /// point, or an image has no direction or length. Throws std::invalid_argument for a state that does not
-  /// fit, or no cameras.
+  /// Computes the features in all cameras, camera by camera. Returns false if a needed point is outside a
+  /// lens's valid field, or if an image has no direction or length. Throws std::invalid_argument for a state
+  /// that does not fit the arm, and without cameras.
   [[nodiscard]] bool values(const ArmState& state, std::span<const View> views, Eigen::VectorXd& values);
-  /// Computes the features and their derivatives with respect to the state. The columns are each section's
-  /// bend_x, bend_y (rad) and stretch.
+  /// Computes the features and their derivatives with respect to the state. The columns are bend_x, bend_y
+  /// (rad) and stretch of each section.
   [[nodiscard]] bool derive(const ArmState& state, std::span<const View> views, Eigen::VectorXd& values,
                             Eigen::MatrixXd& by_state);
 

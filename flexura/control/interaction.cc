@@ -8,7 +8,7 @@ namespace flexura {
 PixelFeature chord_angle(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   const Eigen::Vector2d way = to - from;
   const double square = way.squaredNorm();
-  if (!(square > 0)) throw std::domain_error("a chord's image has no direction: its ends coincide");
+  if (!(square > 0)) throw std::domain_error("the image of a chord has no direction: its ends coincide");
   PixelFeature angle;
   angle.value = std::atan2(way.y(), way.x());
   const Eigen::RowVector2d across = Eigen::RowVector2d(-way.y(), way.x()) / square;
@@ -55,7 +55,8 @@ void curve_moments(const Eigen::Ref<const Eigen::Matrix2Xd>& polygon, CurveMomen
     by_pixels.middleCols<2>(2 * i + 2) += 0.5 * by_m + by_d;
   }
   const double length = sums[0];
-  if (!(length > 0)) throw std::domain_error("a curve's image has no length: no moments");
+  if (!(length > 0))
+    throw std::domain_error("the image of a curve has no length, so that its moments are undefined");
   const double u = sums[1] / length, v = sums[2] / length;
   moments.values << length, u, v, sums[3] / length - u * u, sums[4] / length - u * v,
       sums[5] / length - v * v;

@@ -6,20 +6,19 @@
 // and 22).
 namespace flexura {
 
-/// Broyden's rank-one update: J becomes the nearest matrix that explains the last motion (C. G. Broyden,
-/// 1965; for servoing: M. Jagersand, O. Fuentes, R. Nelson, 1997).
+/// Broyden's rank-one update: each motion changes J to the nearest matrix that explains the motion (C. G.
+/// Broyden, 1965; for servoing: M. Jagersand, O. Fuentes, R. Nelson, 1997).
 class BroydenEstimate {
  public:
-  /// `share` in (0, 1]: applied share of each correction. `least`: motions of the variables with a smaller
-  /// norm are ignored. Throws std::invalid_argument for numbers out of these ranges or not finite.
+  /// `share` in (0, 1]: share of each correction that is applied. `least`: motions of the variables with a
+  /// smaller norm are ignored. Throws std::invalid_argument for numbers that are out of range or not finite.
   explicit BroydenEstimate(Eigen::MatrixXd J, double share = 1, double least = 1e-6);
 
   /// Returns the derivatives of the features with respect to the variables: the initial J with all
   /// corrections.
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return J_; }
-  /// Learns from a motion of the variables by dx and of the features by df. Returns false, and learns
-  /// nothing, if the motion is too small or a number is not finite. Throws std::invalid_argument for sizes
-  /// that do not fit J.
+  /// Learns from a motion of the variables by dx and of the features by df. Returns false and keeps J if the
+  /// motion is too small or a number is not finite. Throws std::invalid_argument for sizes that do not fit J.
   bool learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& df);
 
  private:
@@ -27,19 +26,19 @@ class BroydenEstimate {
   double share_, least_;
 };
 
-/// Recursive least squares with forgetting: J fits all motions best, with smaller weights for older motions
-/// (L. Ljung, "System Identification", 11.2).
+/// Recursive least squares with forgetting: J is the least-squares fit to all motions, with smaller weights
+/// for older ones (L. Ljung, "System Identification", 11.2).
 class RecursiveEstimate {
  public:
-  /// `forgetting` in (0, 1]: factor by which each later motion reduces a motion's weight. `max_variance` > 0:
-  /// initial variance of J, in units of motion^-2. It is also the upper limit, so that the covariance does
-  /// not grow without bound while the arm rests. Throws std::invalid_argument for numbers out of these ranges
-  /// or not finite.
+  /// `forgetting` in (0, 1]: factor by which each new motion multiplies the weights of earlier motions.
+  /// `max_variance` > 0: initial variance of J, in units of motion^-2. It is also an upper limit: without it,
+  /// the covariance would grow without bound while the arm rests. Throws std::invalid_argument for numbers
+  /// that are out of range or not finite.
   explicit RecursiveEstimate(Eigen::MatrixXd J, double forgetting = 0.95, double max_variance = 1e4,
                              double least = 1e-6);
 
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return J_; }
-  /// Learns from a motion, like BroydenEstimate::learn.
+  /// Learns from a motion. Arguments, result and errors are those of BroydenEstimate::learn.
   bool learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& df);
 
  private:

@@ -64,7 +64,7 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
     if (!fits(arm_, asked))
       fault("the law's command does not fit this arm");
     else if (!is_possible(asked))
-      fault("the law's command is not finite, or has a length that is not above 0");
+      fault("the law's command is not finite, or gives a section a length that is not above 0");
   }
   if (fault_) return brake();
   std::string reason;
@@ -213,7 +213,7 @@ int CommandLimiter::braking_steps(const ArmState& next) const {
 std::string CommandLimiter::breach(const std::vector<ArmState>& way) const {
   const ArmState* before = &sent_;
   for (const ArmState& state : way) {
-    if (!is_possible(state)) return "a length that is not above 0";
+    if (!is_possible(state)) return "a section's length is not above 0";
     for (const LimitWatch& watch : limits_)
       if (watch.sign * watch.value(state) > watch.threshold())
         return fmt::format("section {}: {}", watch.section + 1, name_of(watch.hazard));

@@ -18,81 +18,82 @@ namespace flexura {
 class ContactWatch;
 struct ConvexLimits;
 
-/// Limits of a limiter in addition to the arm's own.
+/// Limits of a limiter, in addition to those of the arm.
 struct LimiterConfig {
   double step = 1.0 / 30;  ///< Time between commands, s; > 0.
   std::optional<Drive> drive =
       {};  ///< Drive of the arm: limits of its motors' speed, step rate, acceleration and position.
-  /// Time between the rows of the command list that the motors follow, s; a rate changes within this time. 0:
-  /// `step`.
+  /// Time between the rows of the command list that the motors follow, s; 0: `step`. Motor rates change
+  /// within this time.
   double list_step = 0;
   std::vector<Obstacle> obstacles =
-      {};  ///< Obstacles that the arm must not touch on its path, checked if looks_ahead.
+      {};  ///< Obstacles that the arm must not touch; checked only with looks_ahead.
   bool looks_ahead =
-      true;  ///< Checks the path for contact (check_motions) up to where the arm would be at rest.
+      true;  ///< Whether to check the path for contact (check_motions), up to where the arm can be at rest.
   int most_braking = 200;  ///< Largest number of steps in which the arm must come to rest.
 };
 
 /// Command of a limiter.
 struct LimitedCommand {
   ArmState state;             ///< Command to send: the arm's state one step from now.
-  bool is_untouched = false;  ///< Equal to the law's command, bit for bit.
-  bool is_at_rest = false;    ///< The arm stays at the last command.
+  bool is_untouched = false;  ///< Whether the command equals the law's command, bit for bit.
+  bool is_at_rest = false;    ///< Whether the arm stays at the last command.
   std::string reason;         ///< Why the law's command was changed, or "".
 };
 
-/// Record of a fault.
+/// Record of a fault that stopped the arm.
 struct LimiterFault {
   double time = 0;     ///< Time since the limiter was constructed, s: number of steps times `step`.
   std::string reason;  ///< Why the arm was stopped.
-  std::optional<ArmState> observed;  ///< Last state from observe().
+  std::optional<ArmState> observed;  ///< Last observed state, given to observe().
   ArmState sent;                     ///< Last command before the fault.
   std::optional<ArmState> asked;     ///< Command of the law at the time of the fault.
 };
 
-/// Limits commands between a law and an arm's drives. For any command of the law, the command that is sent:
-///   - Is finite and within the arm's bends, stretches and folding. It changes no faster than bends and
-///     stretches may.
-///   - Respects the motors' speeds, step rates and accelerations; their backlash and rounding are left to the
-///     drive. It respects the motors' positions, with backlash and rounding.
-///   - Allows the arm to brake to rest within all these limits. With `looks_ahead` this braking path is free
-///   of contact. The limiter keeps the braking path and follows it if no other command is allowed
-///   (docs/control.md, "The limiter").
+/// Limits commands between a law and an arm's drives. Whatever the law's command, the command that is sent:
+///   - Is finite and within the arm's limits of bends, stretches and folding. It changes within the rate
+///     limits of bends and stretches.
+///   - Respects the motors' limits of speed, step rate and acceleration, without backlash and rounding.
+///     Respects the motors' limits of position, with backlash and rounding.
+///   - Allows the arm to brake to rest within all these limits. With `looks_ahead`, this braking path is free
+///     of contact. The limiter keeps the braking path and follows it if no other command is allowed
+///     (docs/control.md, "The limiter").
 /// A command that is not finite or does not fit the arm, and every call of fault(), stops the arm. The arm
 /// follows its braking path to rest and stays there until reset().
 class CommandLimiter {
  public:
-  /// `start`: the command at which the arm is at rest. Throws std::invalid_argument if this state does not
-  /// fit the arm, violates a limit or (with looks_ahead) causes a contact. Also throws it for a step that is
-  /// not positive.
+  /// `start`: the command at which the arm is initially at rest. Throws std::invalid_argument if this state
+  /// does not fit the arm, violates a limit or (with looks_ahead) causes a contact. Also throws it for a step
+  /// that is not positive.
   CommandLimiter(ArmModel arm, LimiterConfig config, const ArmState& start);
   CommandLimiter(const Arm& driven, LimiterConfig config, const ArmState& start)
       : CommandLimiter(ArmModel(driven), std::move(config), start) {}
 
-  /// Returns the command for the next step, as near to `asked` as possible: the nearest one, root of the
-  /// summed squares over bends (rad) and stretches, within limits that are linear about the present command.
-  /// If they are too inexact, the command is on the way from braking to this one.
+  /// Returns the command for the next step: the allowed one that is nearest to `asked`. Distance is the
+  /// Euclidean norm over bends (rad) and stretches. Limits are linearised about the present command. If the
+  /// linearisation is too inexact, the command is between the braking command and the nearest one.
   [[nodiscard]] LimitedCommand next(const ArmState& asked);
-  /// Returns the law's command, shortened so that every motor can still brake to its target at half its
-  /// largest acceleration. It is for laws that reduce the remaining error in each step by the share `rate`
-  /// (1/s) times the step. Returns `asked` if no motor has an acceleration limit.
+  /// Returns a shorter step towards the law's command, so that every motor can brake to its target at half
+  /// its largest acceleration. It is meant for laws that reduce the error in each step by the share `rate`
+  /// (1/s) times the step's duration. Returns `asked` if no motor has an acceleration limit.
   [[nodiscard]] ArmState within_braking(const ArmState& asked, double rate) const;
   /// Returns the command for the next step on the braking path.
   [[nodiscard]] LimitedCommand brake();
 
   /// Stores the last observation, for the record of a fault.
   void observe(const ArmState& observed) { observed_ = observed; }
-  /// Stops the arm because of a fault, such as an error of a port or a lost estimate. Keeps the first of
-  /// several faults.
+  /// Stops the arm because of a fault, such as an error of a port or a lost estimate. If several faults
+  /// occur, keeps the first.
   void fault(const std::string& reason);
   /// Returns the record of a fault at the current time, with this reason.
   [[nodiscard]] LimiterFault record(std::string reason) const {
     return {static_cast<double>(steps_) * config_.step, std::move(reason), observed_, sent_, asked_};
   }
-  /// Returns the fault that stopped the arm; std::nullopt if there was none since the start or the last
+  /// Returns the fault that stopped the arm; std::nullopt without a fault since the start or the last
   /// reset().
   [[nodiscard]] const std::optional<LimiterFault>& fault() const { return fault_; }
-  /// Continues after a fault. Throws std::logic_error before the arm is at rest.
+  /// Clears the fault, so that commands are followed again. Throws std::logic_error if the arm is not yet at
+  /// rest.
   void reset();
 
   /// Returns the last command.

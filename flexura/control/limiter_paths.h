@@ -11,8 +11,8 @@ namespace flexura {
 /// Returns true if the state has one bend and one stretch per section of the arm.
 [[nodiscard]] bool fits(const Arm& arm, const ArmState& state);
 
-/// Returns `count` >= 1 states: `next`, and the states from `next` to rest. Their rates decrease evenly from
-/// (next - now) per step.
+/// Returns `count` >= 1 states: `next`, then the states of a braking path to rest. The change per step
+/// decreases linearly from next - now.
 [[nodiscard]] std::vector<ArmState> path_of(const ArmState& now, const ArmState& next, int count);
 
 /// Returns the highest rate that both motor and controller allow, microsteps/s.

@@ -74,7 +74,7 @@ void LyapunovMonitor::explain(LyapunovVerdict& verdict, double scale) const {
     verdict.reasons.emplace_back("damping removed no energy from the arm");
   if (lyapunov_value(end) < -tolerance_ * scale && end.potential < 0)
     verdict.reasons.emplace_back(
-        "the potential has no minimum at the target: during the run it was below its value at the target");
+        "the potential has no minimum at the target: during the run, it was lower than at the target");
   if (!verdict.is_balanced) {
     const auto count = static_cast<Eigen::Index>(samples_.size());
     Eigen::MatrixX3d courses(count, 3);
@@ -101,12 +101,12 @@ void LyapunovMonitor::explain(LyapunovVerdict& verdict, double scale) const {
           "the arm's elasticity is not fully compensated: {:.0f} % of it remains", 100 * shares[1]));
     if (explains(2))
       verdict.reasons.push_back(
-          fmt::format("the law's force is {:.2f} times the potential's, not 1 times{}", 1 - shares[2],
+          fmt::format("the law's force is {:.2f} times the potential's force, not 1 times{}", 1 - shares[2],
                       shares[2] > 1 ? " (it drives the arm away from the target)" : ""));
     if ((imbalance - courses * shares).cwiseAbs().maxCoeff() > 0.05 * verdict.imbalance)
       verdict.reasons.emplace_back("the forces on the arm are not those of the law");
   }
-  if (!verdict.is_monotone && verdict.reasons.empty()) verdict.reasons.emplace_back("W rises");
+  if (!verdict.is_monotone && verdict.reasons.empty()) verdict.reasons.emplace_back("W increases");
   if (!verdict.is_settled && verdict.reasons.empty()) verdict.reasons.emplace_back("W has not settled yet");
 }
 

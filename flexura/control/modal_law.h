@@ -8,12 +8,13 @@
 
 namespace flexura {
 
-/// How a ModalLaw chooses the force in each mode of an arm that swings.
+/// How a ModalLaw chooses the force in each mode of oscillation.
 enum class ModalLawKind : std::uint8_t {
-  /// Cancels the arm's own dynamics: errors decay as a critically damped oscillator at one rate in all modes.
+  /// Cancels the arm's own dynamics: in all modes, errors decay as critically damped oscillators with equal
+  /// rates.
   computed_torque,
-  /// Artificial potential, a share of the strain energy of the error, with dissipation: each mode is
-  /// critically damped at a share of its own frequency.
+  /// Artificial potential with dissipation. The potential is a share of the error's strain energy. Each mode
+  /// is critically damped at a share of its own frequency.
   potential,
 };
 
@@ -21,21 +22,23 @@ enum class ModalLawKind : std::uint8_t {
 struct ModalLawConfig {
   ModalLawKind kind = ModalLawKind::computed_torque;
   double step = 1.0 / 30;  ///< Time between commands, s; > 0.
-  double rate = 4;         ///< Rate at which errors decay, 1/s; > 0. For the potential: in the slowest mode.
+  /// Rate at which errors decay, 1/s; > 0. With the potential, this is the rate in the slowest mode.
+  double rate = 4;
 };
 
-/// Control of an arm that swings by the forces in its modes (docs/control.md, "Computed torque and artificial
+/// Control of an oscillating arm by the forces in its modes (docs/control.md, "Computed torque and artificial
 /// potential"). Tendons act on the arm as springs: a command moves the equilibrium, and the force in a mode
 /// is proportional to the distance of the arm from it. The law chooses the equilibrium whose force gives the
-/// desired acceleration. Parts of the error outside of the modes decay at the same rate. For an arm without
-/// modes it is resolved-rate control of the shape. Its result is a request, for a limiter.
+/// desired acceleration. Parts of the error outside of the modes decay at the configured rate. For an arm
+/// without modes, the law is resolved-rate control of the shape. A limiter must check its commands.
 class ModalLaw {
  public:
-  /// `driven`: the arm as its drives move it. Throws std::invalid_argument for numbers out of their ranges.
+  /// `driven`: the arm in terms of the sections that the drives bend. Throws std::invalid_argument for
+  /// numbers out of range.
   ModalLaw(const Arm& driven, const ModalLawConfig& config);
 
-  /// Returns the command for the end of the next step. `by_command`: derivative of the shape at rest with
-  /// respect to the command, 3 arcs x 3 sections (Actuation::slopes).
+  /// Returns the command for the end of the next step. `by_command`: derivative of the equilibrium shape with
+  /// respect to the command, (3 arcs) x (3 sections) (Actuation::slopes).
   [[nodiscard]] ArmState step(const PredictiveState& now, const Eigen::MatrixXd& by_command) const;
 
  private:

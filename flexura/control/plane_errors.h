@@ -22,13 +22,14 @@ struct PlaneError {
 };
 
 /// Returns true if the two projections determine the rotation from the direction `measured` to `desired`,
-/// each given as angles theta and q, rad. Both directions must be at least 10 degrees from a quarter turn of
-/// either angle, with no quarter turn of theta between them. Otherwise, both pictures have to be
-/// triangulated. Theta is continuous along the arm: angles that differ by a whole turn count as different.
+/// each given as angles theta and q, rad. Both angles of both directions must differ by at least 10 degrees
+/// from pi/2 and -pi/2, and theta must not cross such an angle between the directions. Otherwise, points must
+/// be triangulated from both pictures. Theta is continuous along the arm: angles that differ by a full turn
+/// count as different.
 [[nodiscard]] bool planes_determine(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired);
 
-/// Returns true if one projection shows the direction along +Y and the other one along -Y, which noise may
-/// cause.
+/// Returns true if the direction is towards +Y in one projection and towards -Y in the other one. Noise can
+/// cause such contradictions.
 [[nodiscard]] bool planes_contradict(const PlaneView& seen);
 
 /// Returns the errors of the angles from the plane errors e_1 = alpha_1 - alpha_1d and e_2 = alpha_2 -

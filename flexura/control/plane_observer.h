@@ -11,15 +11,15 @@ namespace flexura {
 
 /// Observes a distributed arm in two parallel projections and computes its errors from a target
 /// (docs/control.md, eq. 14 and 15). Where the projections do not determine the errors (planes_determine) or
-/// contradict each other (planes_contradict), both pictures are triangulated. Then theta and q are measured
-/// directly, with the same noise.
+/// contradict each other (planes_contradict), points are triangulated from both pictures. There, theta and q
+/// are measured directly, with equal noise.
 class PlaneObserver {
  public:
-  /// Makes the observer for all arms with the same model as `arm`. `target`: coordinates of the target.
-  /// `noise`: standard deviations of alpha_1 and alpha_2 at each of the points arm.shapes().s, rad.
+  /// Makes an observer for arms that have the model of `arm`. `target`: coordinates of the target. `noise`:
+  /// standard deviations of alpha_1 and alpha_2 at each of the points arm.shapes().s, rad.
   PlaneObserver(const DistributedArm& arm, const Eigen::VectorXd& target, const std::array<double, 2>& noise);
 
-  /// Measures an arm, which is set to the state x. `deviate(i)` returns noise with variance 1: first for
+  /// Measures an arm that is set to the state x. `deviate(i)` returns noise with variance 1: first for
   /// alpha_1 at all points, then for alpha_2.
   void look(const DistributedArm& arm, const Eigen::VectorXd& x,
             const std::function<double(std::uint64_t i)>& deviate);
@@ -28,10 +28,10 @@ class PlaneObserver {
   [[nodiscard]] const Eigen::VectorXd& e_theta() const { return e_theta_; }
   /// Returns the errors of q at the points in the last measurement, measured minus desired, rad.
   [[nodiscard]] const Eigen::VectorXd& e_q() const { return e_q_; }
-  /// Returns the coordinates of the last measurement: those whose angles fit the measured ones by least
-  /// squares along the arm. The lengths are the true ones.
+  /// Returns the coordinates of the last measurement. Their angles are the least-squares fit to the measured
+  /// angles along the arm. Their lengths are the true lengths.
   [[nodiscard]] const Eigen::VectorXd& coordinates() const { return coordinates_; }
-  /// Returns the share of triangulated points over all measurements.
+  /// Returns the share of triangulated points in all measurements.
   [[nodiscard]] double triangulated() const;
 
  private:

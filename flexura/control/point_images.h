@@ -12,7 +12,8 @@ namespace flexura {
 
 /// Pixels of material points of an arm in cameras, and their derivatives with respect to the arm's state
 /// (docs/control.md, eq. 16). The results equal those of BackboneJacobian up to rounding. This class computes
-/// positions only, and is fast for many points in a few cameras. Allocates only at the first use.
+/// only positions, not rotations, and is fast for many points in a few cameras. Allocates memory only at the
+/// first use.
 class PointImages {
  public:
   /// `shares`: positions of the points, as shares of the unstretched arm's length from its base. Throws
@@ -21,7 +22,7 @@ class PointImages {
 
   /// Returns the number of points: one per share, in their order.
   [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(points_.size()); }
-  /// Returns the number of columns of derivatives: each section's bend_x, bend_y (rad), stretch.
+  /// Returns the number of columns of derivatives: bend_x, bend_y (rad) and stretch of each section.
   [[nodiscard]] Eigen::Index columns() const { return 3 * static_cast<Eigen::Index>(arm_.sections.size()); }
 
   /// Sets the arm's state. Throws std::invalid_argument if the state does not fit the arm.
@@ -29,10 +30,10 @@ class PointImages {
   /// Returns p_WP of point i, m.
   [[nodiscard]] Eigen::Vector3d place(Eigen::Index i) const;
 
-  /// Computes the points' pixels. Returns false if the lens does not show a point. Requires set().
+  /// Computes the points' pixels. Returns false if a point is outside the lens's valid field. Requires set().
   [[nodiscard]] bool see(const View& view, Eigen::Matrix2Xd& pixels) const;
   // NOLINTNEXTLINE(performance-unnecessary-value-param): an Eigen::Ref is written through.
-  /// Computes the pixels and their derivatives, two rows per point, into 2 count() x columns().
+  /// Computes the pixels and their derivatives, a matrix of 2 count() x columns() with two rows per point.
   [[nodiscard]] bool see(const View& view, Eigen::Matrix2Xd& pixels, Eigen::Ref<Eigen::MatrixXd> by_state);
 
  private:

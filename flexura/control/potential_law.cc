@@ -79,8 +79,8 @@ std::vector<std::string> PotentialLaw::violations() const {
     found.push_back(fmt::format("{:.3g} % of gravity is compensated, not 100 %", 100 * gains_.gravity_share));
   if (gains_.elasticity == ElasticityRule::ignored)
     found.emplace_back(
-        "the arm's elasticity is neither cancelled nor part of the potential, and pulls away from the "
-        "target");
+        "the arm's elasticity is neither cancelled nor part of the potential, and pulls the arm away from "
+        "the target");
   if (gains_.elasticity == ElasticityRule::shaped &&
       least_eigenvalue(stiffness_ + stiffness_at_target_ - gravity_stiffness_) <= 0)
     found.emplace_back("potential and elasticity together have no minimum at the target");

@@ -12,9 +12,10 @@ namespace flexura {
 /// How an artificial potential handles the arm's elasticity.
 enum class ElasticityRule : std::uint8_t {
   cancelled,  ///< The law adds dV_e/dx.
-  shaped,     ///< V_e is part of the potential, tilted so that its slope at the target is zero.
-  ignored,    ///< Neither. This violates the condition of the theory, unless the elastic forces vanish at the
-              ///< target (no bend or stretch); then it counts as shaped.
+  shaped,     ///< V_e is part of the potential. A linear term makes its gradient at the target zero.
+  /// The law neglects V_e. This violates a condition of the theory, unless the target has no bend and no
+  /// stretch: then the elastic forces vanish there, and it counts as `shaped`.
+  ignored,
 };
 
 /// Gains of the law. The defaults satisfy the theory; other values can violate it, to show the effects.
@@ -23,7 +24,7 @@ struct PotentialGains {
   Eigen::Matrix2d damping =
       4 * Eigen::Matrix2d::Identity();  ///< K of (theta, q), N m s per length (m); positive definite.
   double length_stiffness = 200;        ///< k_u of each u_i, N/m; > 0.
-  double length_damping = 40;           ///< N s/m; > 0.
+  double length_damping = 40;           ///< Damping of each u_i, N s/m; > 0.
   double gravity_share = 1;             ///< Compensated share of dV_g/dx.
   ElasticityRule elasticity = ElasticityRule::cancelled;  ///< Handling of dV_e/dx.
   double sign = 1;  ///< Sign of the potential's force; -1 moves away from the target.
@@ -32,35 +33,35 @@ struct PotentialGains {
 /// The paper's law for a distributed arm (its section 2 and the sources cited there; docs/control.md, eq. 9):
 ///   F = -dPi/dx + dV_g/dx - K dx/dt,
 ///   Pi = 1/2 int (k_theta (theta - theta_d)^2 + k_q (q - q_d)^2) ds + 1/2 k_u sum (u - u_d)^2.
-/// F are generalized forces on the coordinates of a DistributedArm. If the conditions of the theory hold, W =
-/// T + Pi decreases: dW/dt = -int (theta_t, q_t) K (theta_t, q_t) ds, minus the power of the arm's own
+/// F has the generalized forces on the coordinates of a DistributedArm. If the conditions of the theory hold,
+/// W = T + Pi decreases: dW/dt = -int (theta_t, q_t) K (theta_t, q_t) ds, minus the power of the arm's own
 /// damping.
 class PotentialLaw {
  public:
-  /// Makes the law for all arms with the same model as `arm`. `target`: coordinates of the target. Throws
-  /// std::invalid_argument for numbers that are not finite, or a target of another size.
+  /// Makes a law for arms that have the model of `arm`. `target`: coordinates of the target. Throws
+  /// std::invalid_argument for numbers that are not finite, and for a target whose size does not fit the arm.
   PotentialLaw(const DistributedArm& arm, Eigen::VectorXd target, const PotentialGains& gains);
 
-  /// Returns the violated conditions of the theory, in words; empty if W is sure to decrease.
+  /// Returns the violated conditions of the theory in words. If it is empty, W decreases for certain.
   [[nodiscard]] std::vector<std::string> violations() const;
 
-  /// Computes the generalized forces Q on an arm, which is set to the state (x, v).
+  /// Computes the generalized forces Q on an arm that is set to the state (x, v).
   void force(const DistributedArm& arm, const Eigen::VectorXd& x, const Eigen::VectorXd& v,
              Eigen::VectorXd& Q) const;
   /// Computes the forces from measured errors (measured minus desired) of theta and q at the points
-  /// arm.shapes().s, rad. The errors of lengths follow from x.
+  /// arm.shapes().s, rad. Computes the errors of lengths from x.
   void force_of_errors(const DistributedArm& arm, const Eigen::VectorXd& e_theta, const Eigen::VectorXd& e_q,
                        const Eigen::VectorXd& x, const Eigen::VectorXd& v, Eigen::VectorXd& Q) const;
 
-  /// Returns Pi of the arm, which is set to the state x, J. It includes V_e if elasticity is shaped.
+  /// Returns Pi of an arm that is set to the state x, J. It includes V_e if elasticity is shaped.
   [[nodiscard]] double potential(const DistributedArm& arm, const Eigen::VectorXd& x) const;
   /// Returns the power removed by the law, W: int (theta_t, q_t) K (theta_t, q_t) ds + k sum u_t^2.
   [[nodiscard]] double dissipation(const Eigen::VectorXd& v) const { return v.dot(damping_ * v); }
 
   /// Returns the target coordinates.
   [[nodiscard]] const Eigen::VectorXd& target() const { return target_; }
-  /// Returns the effective gains: elasticity is `shaped` if it is ignored but its forces vanish at the
-  /// target.
+  /// Returns the gains in effect. `elasticity` is `shaped` instead of `ignored` if elastic forces vanish at
+  /// the target.
   [[nodiscard]] const PotentialGains& gains() const { return gains_; }
 
  private:

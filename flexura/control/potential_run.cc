@@ -105,12 +105,12 @@ std::string PotentialRun::reason() const {
   Eigen::Index point = 0;
   if (arm.q().cwiseAbs().maxCoeff(&point) > near * quarter_turn)
     return fmt::format(
-        "|q| reached 90 deg at {:.3f} s, {:.3f} m along the arm: the two angles are singular there",
+        "|q| reached 90 deg at {:.3f} s, {:.3f} m along the arm, where the two angles are singular",
         motion_.time(), arm.shapes().s[point]);
   if (arm.stretch().minCoeff() < least_stretch / near)
     return fmt::format("the length of a section became zero at {:.3f} s", motion_.time());
   if (arm.theta().cwiseAbs().maxCoeff() > near * most_theta)
-    return fmt::format("the motion diverges: at {:.3f} s the arm was wound up farther than any arm can be",
+    return fmt::format("the motion diverges: at {:.3f} s the arm was bent farther than is possible",
                        motion_.time());
   return fmt::format("after {:.3f} s the motion is too fast for the integration", motion_.time());
 }

@@ -16,30 +16,31 @@ namespace flexura {
 /// Simulates a distributed arm under the artificial potential, from rest (docs/control.md, eq. 6 and 9). The
 /// law uses the arm's exact angles or measurements. With measurements, the potential's force and the
 /// compensation of gravity and elasticity use the last measured shape and stay constant until the next
-/// measurement. With two image planes the potential's force uses the plane errors (eq. 14). The damping
-/// always uses the arm's true rates, because it is part of the drives. With few drives, the arm gets the
-/// force nearest to the law's that the drives can produce.
+/// measurement. With two image planes, the potential's force uses the plane errors (eq. 14). The damping
+/// always uses the arm's true rates, because it is part of the drives. With few drives, the force on the arm
+/// is the one nearest to the law's force that the drives can produce.
 class PotentialRun {
  public:
-  /// `start`: coordinates of the arm, at rest. `drives`: the matrix G (section_drives.h); empty: every point
-  /// is driven. Throws std::invalid_argument for a size that does not fit, or numbers that are not finite.
+  /// `start`: coordinates of the arm at the start, where it is at rest. `drives`: the matrix G
+  /// (section_drives.h); empty: every point is driven. Throws std::invalid_argument for sizes that do not fit
+  /// the arm, and for numbers that are not finite.
   PotentialRun(const DistributedArm& arm, const PotentialLaw& law, const Eigen::VectorXd& start,
                const std::optional<AngleMeasurement>& measurement = {}, const OdeTolerance& tolerance = {},
                const Eigen::MatrixXd& drives = {});
   PotentialRun(const PotentialRun&) = delete;  // The motion's force refers to it.
   PotentialRun& operator=(const PotentialRun&) = delete;
 
-  /// Advances to the time `until`, s. The integrator calls go_on() before every step and stops if it returns
-  /// false; an empty go_on never stops it. Returns false if the run stopped earlier, and stopped() then
-  /// returns the reason ("cancelled" if go_on() stopped it).
+  /// Advances to the time `until`, s. The integrator calls go_on() before every step and stops if go_on()
+  /// returns false. An empty go_on never stops it. Returns false if the run stopped before `until`. Then
+  /// stopped() returns the reason ("cancelled" if go_on() stopped it).
   [[nodiscard]] bool advance(double until, const std::function<bool()>& go_on = {});
   /// Returns why the run cannot continue, or "".
   [[nodiscard]] const std::string& stopped() const { return stopped_; }
 
   /// Returns the current time, coordinates and rates, and the arm in this state.
   [[nodiscard]] const DistributedMotion& motion() const { return motion_; }
-  /// Returns the largest part of the law's force that the drives could not produce, as a share of the law's
-  /// largest force.
+  /// Returns the largest difference between the law's force and the drives' force so far, as a share of the
+  /// law's largest force.
   [[nodiscard]] double left_over() const { return largest_ > 0 ? left_over_ / largest_ : 0; }
   /// Returns PlaneObserver::triangulated; 0 if the law does not use two planes.
   [[nodiscard]] double triangulated() const { return planes_ ? planes_->triangulated() : 0; }

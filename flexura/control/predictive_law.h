@@ -13,59 +13,61 @@ namespace flexura {
 /// Settings of the predictive law.
 struct PredictiveLawConfig {
   double step = 1.0 / 30;  ///< Time between commands, s; > 0.
-  int horizon = 18;        ///< Number of steps that are predicted; >= 1.
-  /// Approximate rate at which errors decay while no limit is active, 1/s; > 0.
+  int horizon = 18;        ///< Number of predicted steps; >= 1.
+  /// Approximate decay rate of errors while no limit is active, 1/s; > 0.
   double rate = 6;
   int most_iterations = 60;  ///< Largest number of iterations of the quadratic program's solver.
 };
 
-/// A limit on all commands u of the horizon: by_command . (u - sent) <= room.
+/// A linear limit on all commands u of the horizon: by_command . (u - sent) <= room.
 struct PredictiveLimit {
-  Eigen::RowVectorXd by_command;  ///< By (bend_x, bend_y, stretch) of each section.
-  double room = 0;                ///< Negative if the present command breaks the limit.
+  Eigen::RowVectorXd by_command;  ///< Derivatives with respect to bend_x, bend_y and stretch of each section.
+  /// Distance of the present command `sent` from the limit; negative if `sent` violates the limit.
+  double room = 0;
 };
 
-/// State of an arm and its target from now on, for a step of the law.
+/// Input of a step of the law: the state of an arm, and its target from now on.
 struct PredictiveState {
-  ArmState sent;     ///< Last command, which the drives have reached.
-  ArmState rate;     ///< Rate of the commands until now: bends in rad/s, stretches in 1/s.
+  ArmState sent;     ///< Last command. The drives have reached it.
+  ArmState rate;     ///< Rate at which commands changed in the last step: bends in rad/s, stretches in 1/s.
   ArmState rest;     ///< Shape of the arm at rest under `sent`.
   ArmState desired;  ///< Target shape now.
-  /// Target shape at the end of each later step; after a shorter list the target stays as it is.
+  /// Target shape at the end of each later step. If the list is shorter than the horizon, the last target
+  /// remains.
   std::vector<ArmState> desired_later = {};
   std::vector<PredictiveLimit> limits = {};
-  std::vector<SwingMode> modes = {};  ///< Modes of the arm's swing; empty if the arm does not swing.
-  Eigen::VectorXd swing = {};         ///< z of all modes, then z'.
+  std::vector<SwingMode> modes = {};  ///< Modes of the arm's oscillation; empty for an arm without dynamics.
+  Eigen::VectorXd swing = {};         ///< Modal coordinates z of all modes, then their rates z'.
   /// Estimated frequency of each mode, as a factor on SwingMode::frequency.
   Eigen::VectorXd frequency_factors = {};
 };
 
-/// Model predictive control of an arm's shape (docs/control.md, "Predictive law"). It chooses the changes a_k
-/// of the command's rate over a horizon that minimise
+/// Model predictive control of an arm's shape (docs/control.md, "Predictive law"). Over a horizon, it chooses
+/// the changes a_k of the command's rate that minimise
 ///   sum over k of |e_k|^2 + rho |a_k / step|^2,
-/// with e_k the predicted distance along the arm from the target, root mean square, share of its length. The
-/// prediction is linear about the present command: the shape at rest follows the commands by its derivative,
-/// and the modes swing freely between kicks. Limits are those of bends and bend rates, and the given linear
-/// ones (PredictiveLimit); stretches are not limited. Solved by the alternating direction method of
-/// multipliers (S. Boyd et al., 2011), with projections on discs and half-spaces. Its iterations keep the
-/// limits approximately; the next command keeps those of bends and rates exactly. The result is a request,
-/// for a limiter.
+/// where e_k is the predicted distance from the target, root mean square along the arm, share of its length.
+/// The prediction is linear about the present command. Commands change the equilibrium shape according to its
+/// derivative and excite the modes, which oscillate freely in between. Limits are those of bends and bend
+/// rates, and the given linear ones (PredictiveLimit); stretches are not limited. The solver is the
+/// alternating direction method of multipliers (S. Boyd et al., 2011), with projections on discs and
+/// half-spaces. Its iterations satisfy the limits approximately. The next command satisfies those of bends
+/// and rates exactly. A limiter must check it.
 class PredictiveLaw {
  public:
-  /// `driven`: the arm as its drives see it; `shaped`: with a section for each arc. Throws
-  /// std::invalid_argument for numbers out of their ranges.
+  /// `driven`: the arm in terms of the sections that the drives bend. `shaped`: the arm with one section per
+  /// arc. Throws std::invalid_argument for numbers out of range.
   PredictiveLaw(const Arm& driven, const Arm& shaped, const PredictiveLawConfig& config);
 
-  /// Returns the command for the end of the next step. `by_command`: derivative of the shape at rest by the
-  /// command, 3 arcs x 3 sections (Actuation::slopes).
+  /// Returns the command for the end of the next step. `by_command`: derivative of the equilibrium shape with
+  /// respect to the command, (3 arcs) x (3 sections) (Actuation::slopes).
   [[nodiscard]] ArmState step(const PredictiveState& now, const Eigen::MatrixXd& by_command);
 
-  /// The quadratic program of the last step: the changes x of the rates minimise x . H x / 2 + gradient . x.
-  /// For comparison with other solvers. References are valid until the next step.
+  /// Quadratic program of the last step, for comparison with other solvers. The changes x of the rates
+  /// minimise x . H x / 2 + gradient . x. The references are valid until the next step.
   struct Problem {
     const Eigen::MatrixXd& H;
     const Eigen::VectorXd& gradient;
-    const Eigen::VectorXd& found;  ///< The changes found.
+    const Eigen::VectorXd& found;  ///< Changes of the rates that the solver found.
   };
   [[nodiscard]] Problem problem() const { return {H_, gradient_, changes_}; }
 

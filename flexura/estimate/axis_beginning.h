@@ -9,14 +9,14 @@ namespace flexura {
 
 /// Distance of an image point from a curve, perpendicular to the curve.
 struct Aside {
-  double distance = 0;  ///< px, >= 0.
-  double sigma = 0;     ///< Standard deviation that follows from the noise of the curve's points, px.
+  double distance = 0;  ///< Distance, px; >= 0.
+  double sigma = 0;     ///< Standard deviation of the distance due to the noise of the curve's points, px.
 };
 
-/// Returns the distance of a pixel from the visible backbone at its beginning in `seen`. The curve is
-/// extended beyond its first point by a parabola through its first 40 px, or eight points. Empty if the
-/// visible curve is shorter than that, or turns by more than half a radian in that part. Also empty if the
-/// pixel is not near the beginning, which means from 15 px before the beginning to 5 px behind it.
+/// Returns the distance of a pixel from the visible backbone at the backbone's beginning in `seen`. The curve
+/// is extended beyond its first point by a parabola through the first 40 px, or eight points. Returns
+/// std::nullopt if the visible curve is shorter than this part, or if this part turns by more than 0.5 rad.
+/// Also returns std::nullopt unless the pixel is between 15 px before and 5 px behind the beginning.
 [[nodiscard]] std::optional<Aside> aside_of_beginning(const Observation& seen, const Eigen::Vector2d& pixel);
 
 }  // namespace flexura

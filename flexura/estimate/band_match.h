@@ -10,12 +10,12 @@
 
 namespace flexura {
 
-/// Identifies the observed bands as markers, by their order along `shape`, which is accurate to `sigma` m. If
-/// `sigma` is less than the distance between markers, bands are matched by position and colour. The match is
-/// with the bands of other observations, or with the markers of the prior. Bands without a counterpart are
-/// omitted: they are false detections, or are hidden in a picture. If `sigma` is larger, bands are matched by
-/// their number in order, if each observation shows equally many. Empty if no match is possible. Markers seen
-/// only once are omitted unless their position is known.
+/// Identifies the observed bands as markers, by their order along `shape`. `sigma`: standard deviation of the
+/// shape, m. If `sigma` is smaller than the distance between markers, matches bands by position and colour
+/// with the bands of other observations, or with the markers of the prior. Omits bands without a counterpart,
+/// which are false detections or are hidden in another picture. If `sigma` is larger, and all observations
+/// show equally many bands, matches bands by their index. The result is empty if no match is possible. It
+/// omits markers that were observed only once, unless their position is known.
 [[nodiscard]] std::vector<BandObservation> match_bands(const ShapePrior& prior, const Shape& shape,
                                                        double sigma,
                                                        std::span<const Observation> observations);
@@ -26,7 +26,7 @@ struct PlacedMarker {
   std::size_t count = 0;  ///< Number of observations of the marker.
 };
 
-/// Returns the positions of the matched markers on `shape`, from its base on.
+/// Returns the positions of the matched markers on `shape`, from base to tip.
 [[nodiscard]] std::vector<PlacedMarker> placed_markers(const ShapePrior& prior, const Shape& shape,
                                                        std::span<const BandObservation> bands,
                                                        std::span<const Observation> observations);

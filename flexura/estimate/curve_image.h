@@ -11,38 +11,38 @@
 namespace flexura {
 
 /// The image of a backbone: a cubic curve through the images of the backbone's knots, with their tangents.
-/// For arcs of an eighth of a radian the curve is accurate to 1e-6 of the arc's radius.
+/// For arcs of 1/8 rad between knots, the curve is accurate to 1e-6 of the arc's radius.
 class CurveImage {
  public:
-  /// Sets the curve; returns false if the lens does not see a knot.
+  /// Sets the curve. Returns false if the lens cannot image a knot.
   bool set(const View& view, const SpaceCurve& curve) { return set(view, {}, curve, -1, -1); }
-  /// Sets the curve for a view with this `error`. Of the `count` columns of derivatives, those from `own` on
-  /// are with respect to the error; `own` = -1: none are.
+  /// Sets the curve for a view with this `error`. `count`: number of columns of derivatives. Columns from
+  /// `own` on are derivatives with respect to the error; `own` = -1: there are no such columns.
   bool set(const View& view, const ViewError& error, const SpaceCurve& curve, Eigen::Index own,
            Eigen::Index count);
 
-  /// Returns the position of the last knot; positions count from 0 at the base.
+  /// Returns the position of the last knot. Positions are fractional indices of knots, from 0 at the base.
   [[nodiscard]] double last() const { return static_cast<double>(pieces_.size()); }
 
   /// A point of the image.
   struct Point {
-    double place = 0;         ///< Position along the curve: the knot's index, with a fraction between knots.
+    double place = 0;         ///< Position along the curve: fractional index of knots.
     Eigen::Vector2d pixel;    ///< Image point of the curve, px.
     Eigen::Vector2d tangent;  ///< Unit tangent.
     double speed = 0;         ///< Speed along the curve, px per knot.
-    double scale = 0;         ///< Scale across the line of sight, px per metre.
+    double scale = 0;         ///< Scale perpendicular to the line of sight, px per metre.
   };
-  /// Returns the point at the position `place`, from 0 to last(). Beyond that range the nearest piece's cubic
-  /// is extended.
+  /// Returns the point at the position `place`, from 0 to last(). Outside this range, the cubic of the
+  /// nearest piece is extended.
   [[nodiscard]] Point at(double place) const;
-  /// Range of a search, as indices of knots. The interval that begins at the knot `likely` is searched first.
+  /// Range of a search, as indices of knots. The search begins with the interval after the knot `likely`.
   struct Window {
     std::size_t first = 0, last = 0, likely = 0;
   };
-  /// The whole curve, searched from the first knot.
+  /// Returns the range of the whole curve. The search begins at the first knot.
   [[nodiscard]] Window everywhere() const { return {0, pieces_.size(), 0}; }
-  /// Returns the curve's point nearest to a pixel, of those within a window whose tangent is near `heading`
-  /// (unit). The heading selects the right branch of a hairpin.
+  /// Returns the curve's point nearest to a pixel, among the points in a window whose tangent is similar to
+  /// the unit vector `heading`. Thus `heading` selects the right branch of a hairpin curve.
   [[nodiscard]] Point nearest(const Eigen::Vector2d& pixel, const Eigen::Vector2d& heading,
                               const Window& window) const;
   /// Sets `row` to the derivative of the pixel with respect to the unknowns, projected on `direction`, at a

@@ -13,8 +13,8 @@ namespace flexura {
 /// Indices of two observations, in ascending order.
 using ObservationPair = std::array<std::size_t, 2>;
 
-/// Returns the two observations with the most perpendicular lines of sight and the largest visible arm, which
-/// determine positions best. Needs at least two observations.
+/// Returns the two observations that determine positions best: those with the most nearly perpendicular lines
+/// of sight and the largest visible arm. Requires at least two observations.
 [[nodiscard]] ObservationPair best_pair(std::span<const Observation> observations);
 
 /// Returns the points of the arm triangulated from two observations, in W, m, in the order of the points of
@@ -23,9 +23,9 @@ using ObservationPair = std::array<std::size_t, 2>;
 
 /// Returns all observations with their points in a common order along the arm. The second observation of the
 /// pair keeps its order or, with `against`, is reversed. The other observations are ordered like the points
-/// that the pair then triangulates. With `from_base` the pair runs from the base, and other observations with
-/// a visible base keep their order. Without `from_base`, the very first observation keeps its order: if it
-/// was reversed, all observations are reversed again.
+/// that the pair then triangulates. With `from_base`, the pair's order begins at the base, and other
+/// observations with a visible base keep their order. Without `from_base`, the first of all observations
+/// keeps its order: if it was reversed, all observations are reversed again.
 [[nodiscard]] std::vector<Observation> run_alike(std::vector<Observation> observations,
                                                  const ObservationPair& pair, bool against, bool from_base);
 

@@ -10,14 +10,14 @@
 
 namespace flexura {
 
-/// Returns the observation of the backbone in a picture with this `view`. The observation has these borders,
-/// the arm's ends, and the centerline where both borders are visible, corrected for the lens. Pixels for
-/// which the lens has no ray are omitted. Ends are omitted unless the axis covers nearly all of the
-/// silhouette. Otherwise an end of the axis may be a fold of the arm.
+/// Returns the observation of the backbone in a picture with this `view`. It has the borders, the arm's ends,
+/// and the centerline where both borders are visible. The centerline is moved to the image of the backbone
+/// (vision/backbone_image.h). Pixels for which the lens has no ray are omitted. Ends are omitted unless the
+/// axis covers nearly all of the silhouette, because an end of the axis may be a fold of the arm.
 [[nodiscard]] Observation observation_of(const ArmObservation& arm, const View& view);
 
-/// Returns the same observation, with the coloured bands around the arm in `picture`, in which the arm was
-/// found. A band that may be two bands seen as one is omitted.
+/// Returns this observation with the coloured bands around the arm in `picture`, the picture in which the arm
+/// was found. Omits bands that may be two merged bands.
 [[nodiscard]] Observation observation_of(const ArmObservation& arm, const View& view,
                                          const Image<std::uint8_t>& picture);
 

@@ -71,7 +71,7 @@ std::string warning_about_ends(const ShapePrior& prior, const ShapeProblem& prob
   const char* what = "either end";
   if (has_base) what = "the tip";
   if (has_tip) what = "the base";
-  return fmt::format("no picture shows {} of the arm, so the arm may continue unseen", what);
+  return fmt::format("no picture shows {} of the arm, so the arm may be longer than what is visible", what);
 }
 
 // Adds notes on pictures that differ from the shape by more than the arm's disks and rings, or slightly wrong
@@ -102,8 +102,8 @@ void add_base_aside(const ShapePrior& prior, std::span<const Observation> observ
     const auto aside = aside_of_beginning(observations[i], *base);
     if (aside && aside->distance > most + sigmas * aside->sigma)
       result.notes.push_back(
-          fmt::format("in picture {} the arm begins {:.2g} px beside the image of its base: is the base's "
-                      "position right, and the camera's description?",
+          fmt::format("in picture {}, the arm begins {:.2g} px from the image of its base: are the base's "
+                      "position and the camera's description right?",
                       i + 1, aside->distance));
   }
 }
@@ -118,8 +118,8 @@ std::string bent_beyond_arms(const Shape& shape) {
   if (most->norm() <= most_bend) return "";
   return fmt::format(
       "no shape of this arm explains the pictures: section {} would have to bend by more than a full turn. "
-      "Expected an arm and cameras that agree with their descriptions, and pictures with most of that "
-      "section in them",
+      "Expected an arm and cameras that agree with their descriptions, and pictures that show most of this "
+      "section",
       most - bends.begin() + 1);
 }
 
@@ -131,8 +131,8 @@ bool indicates_cameras(const ShapeFit& fit) {
 
 std::string elsewhere(std::size_t picture, const ViewError& error) {
   return fmt::format(
-      "picture {} would need its camera turned by {} degrees and {} % {} in focal length, far more than its "
-      "prior allows",
+      "picture {} would need a camera that is rotated by {} degrees and {} % {} in focal length, far more "
+      "than its prior allows",
       picture + 1, bounded_text(error.turn.norm() / degree, 180),
       bounded_text(100 * std::abs(std::expm1(error.focal)), 100, 3), error.focal < 0 ? "shorter" : "longer");
 }
@@ -156,21 +156,21 @@ std::optional<std::size_t> picture_of_another(std::span<const Observation> obser
 void add_fit_warnings(const ShapeFit& fit, ShapeEstimate& result) {
   constexpr double poor = 3, max_outlier_share = 0.1;
   if (fit.scale > poor)
-    result.notes.push_back(
-        fmt::format("the residuals in the images are {} times larger than their noise explains",
-                    bounded_text(std::round(fit.scale), 1000, 4)));
+    result.notes.push_back(fmt::format("the residuals in the images are {} times their noise",
+                                       bounded_text(std::round(fit.scale), 1000, 4)));
   if (!fit.is_settled) result.notes.emplace_back("the fit did not converge");
   if (fit.outlier_share > max_outlier_share)
-    result.notes.push_back(fmt::format("{:.0f} % of the points are not the arm's", 100 * fit.outlier_share));
+    result.notes.push_back(
+        fmt::format("{:.0f} % of the points do not belong to the arm", 100 * fit.outlier_share));
   if (fit.contradicted > 0)
     result.notes.push_back(fmt::format(
-        "{} of the ends and markers are observed at other positions than the shape's", fit.contradicted));
+        "{} of the ends and markers were observed at positions that do not fit the shape", fit.contradicted));
 }
 
 ShapeEstimate unseen(Shape shape) {
   ShapeEstimate none;
   none.shape = std::move(shape);
-  none.reason = "the arm is not seen in every image";
+  none.reason = "the arm is not visible in every image";
   return none;
 }
 
@@ -224,7 +224,8 @@ ShapeEstimate ShapeEstimator::estimate(std::span<const Observation> observations
   constexpr double another = 0.01;  // Of its length: nearer ones are the same shape.
   if (result.is_found && apart > another * Backbone(result.shape.arm, result.shape.state).length()) {
     result.is_found = false;
-    result.reason = fmt::format("two shapes, up to {:.2g} m apart, explain the images", apart);
+    result.reason =
+        fmt::format("two different shapes explain the images; they are up to {:.2g} m apart", apart);
   }
   return result;
 }
@@ -287,7 +288,8 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
     const auto seen = problem.observations();
     if (const auto found = std::ranges::find_if(seen, lacks_rays); found != seen.end())
       result.reason += fmt::format(
-          ", or within the part of picture {} for which its lens has rays: is its distortion as described?",
+          ", or within the part of picture {} for which its lens has rays: is its description of the "
+          "distortion right?",
           found - seen.begin() + 1);
     return result;
   }
@@ -316,7 +318,8 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
       fit.outlier_share < 0.5 && (fit.rms < config_.most_rms || fit.scale < ShapeFit::most_scale);
   if (!result.is_found) {
     result.reason = fmt::format(
-        "no shape explains the images: {:.0f} % of the points are outliers, and the others are {} px off",
+        "no shape explains the images: {:.0f} % of the points are outliers, and the residual of the others "
+        "is {} px",
         100 * fit.outlier_share, fit.rms < 100 ? fmt::format("{:.2f}", fit.rms) : bounded_text(fit.rms, 100));
   }
   add_fit_warnings(fit, result);
@@ -328,11 +331,11 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   if (std::string warning = warning_about_ends(prior_, problem); !warning.empty())
     result.notes.push_back(std::move(warning));
   if (sigma > config_.uncertain * length)
-    result.notes.push_back(
-        fmt::format("the shape is uncertain by {} m{}", bounded_text(sigma, length),
-                    prior_.is_length_known
-                        ? ""
-                        : ", if the shape is right: with an unknown length another shape may fit as well"));
+    result.notes.push_back(fmt::format(
+        "the standard deviation of the shape is {} m{}", bounded_text(sigma, length),
+        prior_.is_length_known
+            ? ""
+            : ", if it is the right shape: because the length is unknown, another shape may also fit"));
   return result;
 }
 

@@ -16,30 +16,30 @@ namespace flexura {
 /// Settings of an estimate.
 struct EstimatorConfig {
   std::size_t most_points =
-      100;                   ///< Largest number of points per observation; further points are thinned out.
+      100;  ///< Largest number of points per observation. If there are more, evenly spaced ones are selected.
   int most_iterations = 60;  ///< Largest number of iterations per descent.
-  /// Standard deviation of the shape (root mean square along the arm, share of its length) above which the
-  /// estimate gets a note.
+  /// If the standard deviation of the shape exceeds this value, the estimate gets a note. It is the root mean
+  /// square along the arm, as a share of its length.
   double uncertain = 1.1e-4;
-  /// Largest root mean square distance of the points from the shape's images, px, beyond what their noise
-  /// explains. Inaccurate cameras need a larger value.
+  /// Largest accepted root mean square distance between the points and the shape's images, px, in addition to
+  /// the points' noise. Inaccurate cameras need a larger value.
   double most_rms = 1;
 };
 
 /// An estimate of the arm's shape from camera observations.
 struct ShapeEstimate {
-  Shape shape;  ///< Only a guess if is_found is false.
+  Shape shape;  ///< Estimated shape; only a guess if is_found is false.
   bool is_found = false;
-  std::string reason;         ///< Reason why no shape was found, or "".
-  bool is_elsewhere = false;  ///< No shape was found, because the camera errors that explain the pictures are
-                              ///< far beyond their priors.
-  std::vector<std::string> notes;  ///< Reasons to distrust the estimate; empty if there are none.
+  std::string reason;  ///< Reason why no shape was found, or "".
+  /// Whether no shape was found because the pictures require camera errors far beyond their priors.
+  bool is_elsewhere = false;
+  std::vector<std::string> notes;  ///< Reasons to distrust the estimate; empty for a trusted estimate.
   double rms = 0;                  ///< Root mean square of the points' distances from the shape's images, px.
   double outlier_share = 0;        ///< Share of the points that are outliers.
   double scale = 1;  ///< Scale of the residuals in units of their standard deviations, at least 1. `sigma`
                      ///< includes this factor.
-  /// Knots (m of arc length), and the standard deviation of the position at each, m: root of the covariance's
-  /// trace.
+  /// Arc lengths of the knots, m, and the standard deviation of the position at each knot, m: the square root
+  /// of the covariance's trace.
   std::vector<double> s, sigma;
   Eigen::MatrixXd covariance;         ///< Covariance of the unknowns (ShapeVariables).
   double innovation = 0;              ///< Normalised innovation (ShapeFit::innovation).
@@ -53,27 +53,29 @@ struct ShapeEstimate {
 };
 
 /// Fits shapes to observations by one or more cameras: least squares of the distances in all images at once,
-/// with the full camera model (docs/estimation.md). Equal observations give equal results, except that
-/// `follow` depends on its start. Bands are used if a fit without them identifies them (band_match.h) and the
+/// with the full camera model (docs/estimation.md). Equal observations give equal results; those of `follow`
+/// also depend on its start. Bands are used if a fit without bands identifies them (band_match.h) and the
 /// axes do not contradict them. Points that are not finite, or with a sigma that is not positive, are
 /// ignored. If no shape is found, the estimate contains the reason. Not thread-safe: use one estimator per
 /// thread.
 class ShapeEstimator {
  public:
-  /// `prior` describes what is known of the arm.
+  /// `prior`: prior knowledge of the arm.
   explicit ShapeEstimator(ShapePrior prior, EstimatorConfig config = {});
 
-  /// Estimates without a start. Uses the two observations with the most perpendicular lines of sight and the
-  /// largest visible arm. Their points are paired by epipolar geometry and order, and triangulated. If the
-  /// base's position is known, each observation is ordered from the end nearer to the base. Otherwise the
-  /// first observation keeps its order, and the others are tried in both orders.
+  /// Estimates the shape without a given start. It triangulates points of the two observations with the most
+  /// nearly perpendicular lines of sight and the largest visible arm. Corresponding points are found by
+  /// epipolar geometry and order. If the base's position is known, each observation is ordered from the end
+  /// nearer to the base. If it is unknown, the first observation keeps its order, and the others are tried in
+  /// both orders.
   [[nodiscard]] ShapeEstimate estimate(std::span<const Observation> observations);
 
-  /// Estimates with `before` as the start: the previous shape of the prior's arm, with or without `views`.
+  /// Estimates the shape starting at `before`, the previous shape of the prior's arm. `before` may contain
+  /// view errors.
   [[nodiscard]] ShapeEstimate follow(std::span<const Observation> observations, const Shape& before);
 
-  /// Updates a predicted shape, which is weighted by its covariance. The prediction includes the views'
-  /// errors and replaces the priors of the observations. These priors only show which views have an error.
+  /// Updates a predicted shape. The prediction is weighted by its covariance. It includes the views' errors
+  /// and replaces the priors of the observations. These priors only determine which views have an error.
   [[nodiscard]] ShapeEstimate update(std::span<const Observation> observations,
                                      const ShapePrediction& before);
 
@@ -91,8 +93,8 @@ class ShapeEstimator {
   ShapeDescent descent_;
 };
 
-/// Returns the prior of an arm that a file describes. Everything is known, except the length if the limits
-/// let a section stretch.
+/// Returns the prior of an arm that a file describes. Everything is known; only the length is unknown if a
+/// section can stretch.
 [[nodiscard]] ShapePrior described_arm(const Arm& arm);
 
 /// Returns the prior of an arm without a kinematic model: `sections` equal, short, smooth sections.

@@ -248,7 +248,7 @@ TEST(ShapeEstimator, DoubtsOrRefusesWhatNoShapeExplains) {
     seen[1].points.clear();
     const ShapeEstimate none = estimator.estimate(seen);
     EXPECT_FALSE(none.is_found);
-    EXPECT_EQ(none.reason, "the arm is not seen in every image");
+    EXPECT_EQ(none.reason, "the arm is not visible in every image");
   });
 }
 
@@ -283,9 +283,8 @@ TEST(ShapeEstimator, NamesThePictureThatItsLensShowsTheArmInNoPartOf) {
   seen[1].view.lens = Lens(folded);
   const ShapeEstimate none = ShapeEstimator(prior).estimate(seen);
   EXPECT_FALSE(none.is_found);
-  EXPECT_THAT(none.reason,
-              testing::EndsWith("within the part of picture 2 for which its lens has rays: is its "
-                                "distortion as described?"));
+  EXPECT_THAT(none.reason, testing::EndsWith("within the part of picture 2 for which its lens has rays: is "
+                                             "its description of the distortion right?"));
 }
 
 // An arm that is described as stiffer than it is.

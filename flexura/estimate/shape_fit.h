@@ -11,16 +11,17 @@ namespace flexura {
 /// Result of a descent.
 struct ShapeFit {
   Shape shape;
-  bool is_settled = false;  ///< Whether no step reduces the cost further.
+  bool is_settled = false;  ///< Whether the descent converged: no step reduces the cost further.
   int iterations = 0;
   double scale = 1;          ///< Robust scale of the residuals, in units of their sigmas; at least 1.
-  double cost = 0;           ///< Mean of the points' squared distances, each bounded, px^2.
+  double cost = 0;           ///< Mean of the points' squared distances, each limited to a bound, px^2.
   double rms = 0;            ///< Root mean square of the inlier points' distances, px.
   double outlier_share = 0;  ///< Share of the points that are outliers.
   std::vector<double> outlier_share_in = {};  ///< Share of outliers in each observation.
-  double innovation = 0;  ///< Normalised innovation of a prediction: root mean square of its residuals in
-                          ///< standard deviations.
-  int contradicted = 0;   ///< Number of observed ends and markers that the shape contradicts.
+  /// Normalised innovation of a prediction: root mean square of the prediction's residuals, in standard
+  /// deviations.
+  double innovation = 0;
+  int contradicted = 0;  ///< Number of observed ends and markers that the shape contradicts.
   /// Covariance of the unknowns; infinite if the observations do not determine them.
   Eigen::MatrixXd covariance;
 
@@ -31,9 +32,8 @@ struct ShapeFit {
   }
 };
 
-/// Treatment of outliers at the beginning of a descent. `far`: all points are inliers at first, whatever
-/// their distance from the start. `near`: points beyond the residuals' spread are outliers from the
-/// beginning.
+/// Treatment of outliers at the beginning of a descent. `far`: all points are inliers at first, regardless of
+/// their residuals at the start. `near`: points beyond the residuals' spread are outliers from the beginning.
 enum class StartKind { far, near };
 
 /// Minimises by the Levenberg-Marquardt method from `start`, with Geman-McClure weights for residuals beyond

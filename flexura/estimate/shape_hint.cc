@@ -84,9 +84,10 @@ std::optional<std::string> hint_of_radius(std::span<const Observation> observati
   });
   if (is_one)
     return fmt::format(
-        "the pictures show an arm of {:.3g} m radius, its file has {:.3g} m ({:.3g} m is the default)",
+        "the pictures show an arm with a radius of {:.3g} m, but its file has {:.3g} m ({:.3g} m is the "
+        "default)",
         ratio * first, first, Section{}.radius[0]);
-  return fmt::format("the pictures show an arm {:.2f} times as thick as in its file", ratio);
+  return fmt::format("the pictures show an arm that is {:.2f} times as thick as in its file", ratio);
 }
 
 // Returns a hint if the base, p_WB, would not be near the observed points.
@@ -109,8 +110,8 @@ std::optional<std::string> hint_of_base(std::span<const Observation> observation
     for (const SeenBorder& point : seen.borders) nearest = std::min(nearest, (point.pixel - *base).norm());
     if (std::isfinite(nearest) && nearest > far * std::hypot(width, height))
       return fmt::format(
-          "the base would be seen at ({:.0f}, {:.0f}) of picture {}, {:.0f} px from the arm there: is that "
-          "the base, is it this camera's picture, and is it the right way up?",
+          "the base would be visible at ({:.0f}, {:.0f}) in picture {}, {:.0f} px from the arm: check the "
+          "base's position, whether the picture is from this camera, and whether it is upside down",
           base->x(), base->y(), i + 1, nearest);
   }
   return std::nullopt;

@@ -9,11 +9,10 @@
 
 namespace flexura {
 
-/// Returns what may be wrong in the description of the arm, as far as the pictures show it. For a known arm
-/// that was found, the hint gives the observed radius if the arm looks much thicker or thinner than
-/// described. For a known arm that was not found, the hint names a camera whose back is towards the base. Or
-/// it names the picture in which the base is far from all observed points. Empty if the base is near these
-/// points or outside the picture, in each picture. Also empty for arms without a radius that were found.
+/// Returns a hint about a possible error in the descriptions of arm and cameras. For a known arm that was
+/// found, the hint states the observed radius if the arm looks much thicker or thinner than described. For a
+/// known arm that was not found, the hint names a camera or a picture. The camera has the base behind it, or
+/// the base is far from all observed points in the picture. Returns std::nullopt if no error is visible.
 [[nodiscard]] std::optional<std::string> hint_of(const ShapePrior& prior,
                                                  std::span<const Observation> observations,
                                                  const ShapeEstimate& estimate);

@@ -58,7 +58,8 @@ std::string found_hint(std::span<const Observation> observations, const Shape& s
 TEST(ShapeHint, TellsTheRadiusThatIsSeen) {
   const Shape described = shape_of(0.024);
   const std::array<Observation, 1> other = {edges_of(described, 0.018)}, same = {edges_of(described, 0.023)};
-  EXPECT_THAT(found_hint(other, described), HasSubstr("show an arm of 0.018 m radius, its file has 0.024 m"));
+  EXPECT_THAT(found_hint(other, described),
+              HasSubstr("show an arm with a radius of 0.018 m, but its file has 0.024 m"));
   EXPECT_EQ(found_hint(same, described), "none");
   Shape tapered = described;
   tapered.arm.sections[1].radius = {0.024, 0.012};
@@ -80,7 +81,7 @@ TEST(ShapeHint, TellsWhereTheBaseWouldBe) {
   EXPECT_EQ(hint(), "none") << "nothing is seen";
   seen[0].points = {{there + Eigen::Vector2d(30, 0), 0.02}, {there + Eigen::Vector2d(200, 0), 0.02}};
   seen[1].points = {{there + Eigen::Vector2d(200, 0), 0.02}};
-  EXPECT_THAT(hint(), HasSubstr("of picture 2, 200 px from the arm there"));
+  EXPECT_THAT(hint(), HasSubstr("in picture 2, 200 px from the arm"));
   seen[1].borders = {{there + Eigen::Vector2d(0, 39), 0.02}};
   EXPECT_EQ(hint(), "none");
   seen[1].borders.clear();

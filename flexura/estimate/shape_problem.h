@@ -17,28 +17,27 @@ namespace flexura {
 /// A band that was identified as one of the arm's markers.
 struct BandObservation {
   std::size_t observation = 0, band = 0;  ///< Indices of the observation and of its band.
-  std::size_t marker = 0;   ///< Number of the marker, from 0; equal for all observations of one marker.
-  std::optional<double> s;  ///< Position, m along the unstretched arm, if known.
+  std::size_t marker = 0;   ///< Number of the marker, from 0. All observations of a marker have its number.
+  std::optional<double> s;  ///< Arc length of the marker on the unstretched arm, m, if known.
 };
 
 /// Residuals of a shape, each in units of its standard deviation. The residuals of observations are distances
-/// in pictures: of points from the shape's image, and of borders from the shape's silhouette. Ends and
-/// markers are compared with their images. Further residuals compare the unknowns with the prior or a
-/// prediction.
+/// in pictures: between points and the shape's image, between borders and the shape's silhouette, and between
+/// ends or markers and their images. Further residuals compare the unknowns with the prior or a prediction.
 class ShapeProblem {
  public:
-  /// `observations` must outlive the problem. Only the bands in `band_observations` are used. A marker with
-  /// known position is compared with that position; a marker with unknown position is compared between
+  /// `observations` must outlive the problem. Only the bands in `band_observations` are used. A marker with a
+  /// known position is compared with this position. A marker with an unknown position is compared between
   /// pictures. `prediction` also replaces the priors of the observations' views. It is ignored unless its
   /// covariance is positive definite.
   ShapeProblem(const ShapePrior& prior, std::span<const Observation> observations,
                std::vector<BandObservation> band_observations = {},
                const ShapePrediction* prediction = nullptr);
 
-  /// What a row of residuals compares; the last two kinds are not observations.
+  /// Kind of a row of residuals. The last two kinds are not observations.
   enum class RowKind { point, border, end, marker, prior, prediction };
 
-  /// Linearises at a shape; returns false if part of it is outside a lens's field.
+  /// Linearises at a shape. Returns false if a part of the shape is outside a lens's field of view.
   bool linearise(const Shape& shape);
 
   [[nodiscard]] const ShapeVariables& variables() const { return variables_; }
@@ -47,9 +46,9 @@ class ShapeProblem {
   [[nodiscard]] auto derivatives() const { return derivatives_.topRows(count_); }
   [[nodiscard]] bool is_seen(Eigen::Index row) const { return kind(row) < RowKind::prior; }
   [[nodiscard]] RowKind kind(Eigen::Index row) const { return kinds_[static_cast<std::size_t>(row)]; }
-  /// Returns the standard deviation by which a row was divided: px, except for rows of the prior.
+  /// Returns the standard deviation by which a row was divided, px. Rows of the prior have other units.
   [[nodiscard]] double sigma(Eigen::Index row) const { return sigmas_[static_cast<std::size_t>(row)]; }
-  /// Returns the observation of an observed row.
+  /// Returns the index of the observation to which a row belongs.
   [[nodiscard]] std::size_t observation(Eigen::Index row) const {
     return of_observation_[static_cast<std::size_t>(row)];
   }

@@ -12,7 +12,7 @@
 
 namespace flexura {
 
-/// Returns the index of the first view whose estimated error is far beyond its prior, if any.
+/// Returns the index of the first view whose estimated error is far beyond the view's prior, if any.
 [[nodiscard]] std::optional<std::size_t> view_elsewhere(std::span<const Observation> observations,
                                                         const Shape& shape);
 
@@ -20,21 +20,21 @@ namespace flexura {
 [[nodiscard]] std::optional<std::size_t> bent_too_far(const Shape& shape);
 
 /// Searches the shape without a start: tries one shape after another until one explains the observations
-/// (docs/estimation.md, "Initial shapes"). If no shape does so with camera errors within their priors, the
-/// result may have larger camera errors.
+/// (docs/estimation.md, "Initial shapes"). If no shape explains them with camera errors within the priors,
+/// the result may have larger camera errors.
 class ShapeSearch {
  public:
-  /// `most_iterations`: largest number in each descent. `most_rms`: largest rms of a good fit
+  /// `most_iterations`: largest number of iterations of each descent. `most_rms`: largest rms of a good fit
   /// (ShapeFit::is_good), px.
   ShapeSearch(const ShapePrior& prior, int most_iterations, double most_rms, ShapeDescent& descent)
       : prior_(prior), most_iterations_(most_iterations), most_rms_(most_rms), descent_(descent) {}
 
-  /// The best shape, with the points of the observations in its order, from base to tip.
+  /// The best shape, and the observations with their points ordered from base to tip.
   struct Result {
     ShapeFit fit;
     std::vector<Observation> seen;
-    /// Distance of another shape that explains all observations equally well, m; 0: no such shape. It is
-    /// searched only if an end is displaced and nothing else decides between the two.
+    /// Distance of another shape that explains all observations equally well, m; 0: no such shape. Another
+    /// shape is searched only if an end is displaced and no other observation decides between the two shapes.
     double apart = 0;
   };
   /// Returns the best shape for at least one observation. If the base is unknown, the first observation keeps

@@ -137,7 +137,7 @@ ShapeEstimate ShapeTracker::look(std::span<const Observation> observations, doub
                                  const std::optional<ArmState>& expected, const SwingPath& path) {
   if (!are_enough(observations)) {
     ShapeEstimate none;
-    none.reason = "the arm is not seen in every image";
+    none.reason = "the arm is not visible in every image";
     return none;
   }
   is_updated_ = false;

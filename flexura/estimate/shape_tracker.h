@@ -11,14 +11,15 @@
 
 namespace flexura {
 
-/// Process noise of an arm and of the cameras' views: standard deviations.
+/// Standard deviations of the process noise of an arm and of the cameras' views.
 struct TrackerConfig {
   double process_noise = 0.005;  ///< Process noise of each bend, rad per root second.
-  /// The same for an arm that swings. It is larger, since an error of the equilibrium must not pass for
-  /// swing.
+  /// Process noise of each bend of an arm with dynamics, rad per root second. It is larger, because an error
+  /// of the equilibrium must not be mistaken for an oscillation.
   double swinging_noise = 0.03;
   double motion_noise =
-      0.1;  ///< Motion-proportional noise of each bend, as a share of the predicted change of its section.
+      /// Motion-proportional noise of each bend, as a share of the predicted change of the section's bend.
+      0.1;
   double turn_noise = 1e-4;   ///< Process noise of a view's rotation error, rad per root second.
   double focal_noise = 1e-4;  ///< Process noise of a view's focal error, per root second.
   /// Predictions with a larger normalised innovation (ShapeEstimate::innovation) are discarded.
@@ -29,27 +30,27 @@ struct TrackerConfig {
   int patience = 10;
 };
 
-/// Tracks the shape of an arm by a Kalman filter whose update is the estimator's fit. Each estimate uses
-/// earlier observations of the shape and of the view errors. Information that is weak in one pair of pictures
-/// accumulates over many pairs. Not thread-safe.
+/// Tracks the shape of an arm by a Kalman filter. The filter's update is the estimator's fit. Each estimate
+/// also uses earlier observations of the shape and of the view errors, so that information from many pairs of
+/// pictures accumulates. Not thread-safe.
 class ShapeTracker {
  public:
   /// Throws std::invalid_argument if the arm's base or length is not known.
   ShapeTracker(ShapePrior prior, const EstimatorConfig& estimator, const TrackerConfig& config = {});
 
-  /// Returns the shape at `time` (s). `expected` is the predicted shape, if any: the previous estimate,
-  /// advanced by the known motion of the arm since. Without a prediction, earlier observations are discarded.
-  /// If the shape is found, `shape.views` contains the views' errors.
+  /// Returns the shape at `time` (s). `expected`: predicted shape, which is the previous estimate advanced by
+  /// the known motion of the arm since then. Without it, earlier observations are discarded. If the shape is
+  /// found, `shape.views` contains the views' errors.
   [[nodiscard]] ShapeEstimate look(std::span<const Observation> observations, double time,
                                    const std::optional<ArmState>& expected);
-  /// Returns the shape of an arm that swings. `expected`: prediction without the swing's change; `path`: of
-  /// the drives since the previous estimate.
+  /// Returns the shape of an arm that oscillates. `expected`: prediction without the change of the
+  /// oscillation. `path`: motion of the drives since the previous estimate.
   [[nodiscard]] ShapeEstimate look(std::span<const Observation> observations, double time,
                                    const std::optional<ArmState>& expected, const SwingPath& path);
-  /// Returns the swing at the last estimate; not tracked for an arm without modes.
+  /// Returns the oscillation at the last estimate. It is not tracked for an arm without modes.
   [[nodiscard]] const SwingFilter& swing() const { return swing_; }
 
-  /// Resets the tracker: the shape at the next observations is unknown.
+  /// Resets the tracker. The next estimate uses no prediction.
   void forget() {
     prediction_.reset(), usual_rms_ = 0, unreliable_ = 0, elsewhere_.reset();
     swing_.forget();

@@ -36,7 +36,7 @@ TEST(ShapeOfUnknownMake, IsNotTrustedWhereTheBaseIsElsewhere) {
       // Notes on uncertainty alone are switched off.
       return ShapeEstimator(unknown_arm(base, truth.length()), {.uncertain = 1}).estimate(observations);
     };
-    const auto speaks_of_base = Contains(HasSubstr("beside the image of its base"));
+    const auto speaks_of_base = Contains(HasSubstr("px from the image of its base"));
     const ShapeEstimate right = estimate({0, 0, 0}, seen);
     EXPECT_TRUE(right.is_trusted()) << testing::PrintToString(right.notes);
     // Across its direction, 3 mm: a pixel.
@@ -68,7 +68,7 @@ TEST(ShapeOfUnknownMake, SaysNothingOfABaseThatNoPictureShows) {
   const ShapeEstimate found =
       ShapeEstimator(unknown_arm(Eigen::Vector3d(0.003, 0, 0), truth.length())).estimate(seen);
   EXPECT_TRUE(found.is_found) << found.reason;
-  EXPECT_THAT(found.notes, Not(Contains(HasSubstr("beside the image of its base"))));
+  EXPECT_THAT(found.notes, Not(Contains(HasSubstr("px from the image of its base"))));
 }
 
 // The first two cameras stand beside each other and give no depth; the others' axes run either way.

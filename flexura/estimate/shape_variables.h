@@ -14,16 +14,18 @@ namespace flexura {
 
 /// Prior knowledge of an arm.
 struct ShapePrior {
-  Arm arm;                              ///< Sections of the arm, and its base as far as known.
-  bool is_base_position_known = true;   ///< Whether the position in Arm::X_WB is known; else it is estimated.
-  bool is_base_direction_known = true;  ///< Whether the rotation in Arm::X_WB is known; else it is estimated.
+  Arm arm;  ///< Sections of the arm, and its base as far as known.
+  /// Whether the position in Arm::X_WB is known; otherwise it is estimated.
+  bool is_base_position_known = true;
+  /// Whether the rotation in Arm::X_WB is known; otherwise it is estimated.
+  bool is_base_direction_known = true;
   bool is_length_known =
-      true;  ///< Whether the length is known; else one stretch, common to all sections, is estimated.
+      true;  ///< Whether the length is known; otherwise one stretch, common to all sections, is estimated.
   /// Standard deviation of the change of curvature from one section to the next, 1/m; infinite: sections bend
   /// independently. An arm without a kinematic model is represented by many short sections with a small
   /// standard deviation.
   double curvature_step = std::numeric_limits<double>::infinity();
-  /// Positions of the middles of the arm's markers, m along the unstretched arm, ascending; empty: not known.
+  /// Increasing arc lengths of the middles of the arm's markers on the unstretched arm, m; empty: unknown.
   std::vector<double> markers = {};
 };
 
@@ -40,17 +42,17 @@ struct ShapePrediction {
   Eigen::MatrixXd covariance;  ///< Covariance of the unknowns (ShapeVariables), including views with a prior.
 };
 
-/// The unknowns of a prior, in order. First are the bends (x and y of each section; only x for planar arms)
-/// and the base's position (m, W). Then follow the base's rotation about its own x and y (rad), and the
-/// logarithm of the stretch. The last ones are the error of each view with a prior (turn in rad, focal).
+/// The unknowns of a prior, in order. They begin with the bends (x and y of each section; only x for planar
+/// arms). The base's position (m, in W), the base's rotation about its own x and y (rad) and the logarithm of
+/// the stretch follow. The last ones are the error of each view with a prior (turn in rad, focal).
 class ShapeVariables {
  public:
-  /// `observations`: each shows whether its view has a prior.
+  /// `observations`: their view priors determine which views have an error.
   explicit ShapeVariables(const ShapePrior& prior, std::span<const Observation> observations = {});
 
   /// Returns the number of all unknowns.
   [[nodiscard]] Eigen::Index count() const { return count_; }
-  /// Returns the number of unknowns of the arm's shape, which come first.
+  /// Returns the number of unknowns of the arm's shape. They are the first unknowns.
   [[nodiscard]] Eigen::Index of_shape() const { return of_shape_; }
   /// Returns the index of the first unknown of the error of an observation's view; -1: the view has no error.
   [[nodiscard]] Eigen::Index of_view(std::size_t observation) const {
@@ -60,7 +62,7 @@ class ShapeVariables {
   [[nodiscard]] Eigen::Index bends_a_section() const { return bends_; }
   /// Returns the step from `from` to `to`: the inverse of plus(), to first order in rotations of the base.
   [[nodiscard]] Eigen::VectorXd minus(const Shape& to, const Shape& from) const;
-  /// Returns `shape` moved by `step`.
+  /// Returns `shape` changed by `step`.
   [[nodiscard]] Shape plus(const Shape& shape, const Eigen::VectorXd& step) const;
   /// Converts the derivatives of a point p_WP with respect to all bends and stretches (3 per section, as in
   /// jacobian.h). The result has the derivatives with respect to the unknowns: 3 x of_shape().

@@ -50,7 +50,7 @@ TEST(ShapeWithViewPriors, SaysHowACameraStandsOnlyWhereThatExplainsThePictures) 
     seen[1] = look()[1];
     const ShapeEstimate none = ShapeEstimator(prior).estimate(seen);
     const bool explains_little = none.outlier_share >= 0.1 || none.scale >= ShapeFit::most_scale;
-    const bool is_said = none.reason.find("would need its camera turned") != std::string::npos;
+    const bool is_said = none.reason.find("would need a camera that is rotated") != std::string::npos;
     EXPECT_EQ(none.is_elsewhere, is_said);
     EXPECT_FALSE(is_said && explains_little) << none.reason;
     if (none.reason.starts_with("the pictures require camera errors far beyond")) ++omitted;
@@ -139,7 +139,7 @@ TEST(ShapeFromABorder, IsNoneWhereItIsOfSomethingElse) {
       seen[1].borders = disc(radius), seen[1].points.clear(), seen[1].ends = {};
       const ShapeEstimate none = tracker.look(seen, 0.03, expected);
       EXPECT_FALSE(none.is_found);
-      EXPECT_NE(none.reason, "the arm is not seen in every image");
+      EXPECT_NE(none.reason, "the arm is not visible in every image");
       EXPECT_FALSE(ShapeEstimator(prior).estimate(seen).is_found);
       EXPECT_FALSE(ShapeEstimator(unknown_arm(Eigen::Vector3d::Zero(), 1)).estimate(seen).is_found);
       seen[1].borders.clear();
@@ -207,7 +207,7 @@ TEST(ShapeEstimator, FindsNothingWhereNothingIsSeen) {
   for (const ShapeEstimate& none :
        {estimator.estimate({}), estimator.follow({}, straight), estimator.update({}, prediction)}) {
     EXPECT_FALSE(none.is_found);
-    EXPECT_EQ(none.reason, "the arm is not seen in every image");
+    EXPECT_EQ(none.reason, "the arm is not visible in every image");
   }
 }
 

@@ -8,8 +8,8 @@
 
 namespace flexura {
 
-/// Returns the number of intervals between knots in each section of the prior's arm. They are enough for
-/// bends of about a quarter turn per section. Many short sections need only two intervals each.
+/// Returns the number of intervals between knots in each section of the prior's arm. The number is sufficient
+/// for bends of about a quarter turn per section. Many short sections need only two intervals each.
 [[nodiscard]] std::size_t intervals_a_section(const ShapePrior& prior);
 
 /// A backbone as knots, evenly spaced along each section, with derivatives with respect to the unknowns.
@@ -38,9 +38,9 @@ class SpaceCurve {
   /// Returns the arc length between knots i and i + 1, m.
   [[nodiscard]] double interval(std::size_t i) const { return lengths_[i / intervals_]; }
   /// Returns the position, as a fractional index of knots, of the point `s` m along the unstretched arm. It
-  /// is 0 at the base and the number of intervals at the tip, and is clamped to this range.
+  /// is 0 at the base and the number of intervals at the tip. It is clamped to this range.
   [[nodiscard]] double place_of(const Arm& arm, double s) const;
-  /// Returns the inverse of place_of, m along the unstretched arm.
+  /// Returns the inverse of place_of(): the arc length on the unstretched arm, m.
   [[nodiscard]] double s_of(const Arm& arm, double place) const;
 
  private:

@@ -53,7 +53,7 @@ TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"section 0", drive_with("section = 1", "section = 0"),
        "x.toml:14:11: drive.tendon[0].section = 0: expected a whole number from 1 to"},
       {"a section beyond the arm", drive_with("section = 2", "section = 3"),
-       "x.toml:20:1: drive.tendon[2].section: ends at section 3 of an arm of 2: expected 1 to 2"},
+       "x.toml:20:1: drive.tendon[2].section: 3: expected a section of the arm, 1 to 2"},
       {"half a section", drive_with("section = 2", "section = 1.5"),
        "drive.tendon[2].section = 1.5: expected a whole number from 1 to"},
       {"angle in mm", drive_with("angle_deg", "angle_mm"),
@@ -83,7 +83,7 @@ TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
        "drive.tendon = [{section = 1, angle = 0}, {section = 1, angle = 0}]\n",
        "expected at least 2 on different sides of the arm"},
       {"steps that are no multiple of the phases", drive_with("steps = 600", "steps = 200"),
-       "x.toml:10:1: drive.motor.steps: 200 full steps per turn of a motor with 3 phases: expected a "
+       "x.toml:10:1: drive.motor.steps: 200 full steps per revolution of a motor with 3 phases: expected a "
        "multiple "
        "of the phases"},
       {"one phase", drive_with("steps = 600", "phases = 1"),
@@ -104,7 +104,7 @@ TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"no piece between disks", drive_with("radius_mm = 15", "disks = 0"),
        "drive.disks = 0: expected a whole number from 1"},
       {"a motor of its own that does not fit", drive_with("angle_deg = 0", "angle_deg = 0\nmotor.phases = 7"),
-       "drive.tendon[0].motor.steps: 300 full steps per turn of a motor with 7 phases"},
+       "drive.tendon[0].motor.steps: 300 full steps per revolution of a motor with 7 phases"},
       {"positions beyond what is counted exactly", drive_with("gear = 10", "gear = 1e6\nradius = 1e-9"),
        "drive.tendon[0]: needs up to "},
   };

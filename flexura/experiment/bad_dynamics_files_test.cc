@@ -22,7 +22,7 @@ TEST(BadDynamics, EachIsOneClearLineAtItsPlace) {
            Bad{"", "task[0].target: missing"},
            Bad{"target = {}\n", "task[0].target: is empty: expected a shape"},
            Bad{"target = 3\n", "task[0].target = 3: expected a table"},
-           Bad{bent_target + angles, "gives a shape in more than one way"},
+           Bad{bent_target + angles, "gives the shape in more than one way"},
            Bad{"target.azimuths = [0, 1]\n", "different numbers of azimuths and elevations"},
            Bad{"target.azimuths = [0, 1]\ntarget.elevations = [0, 0, 0]\n", "expected equal numbers"},
            Bad{"target.azimuths = [0, 0]\ntarget.elevations = []\n", "expected an array of 2 to"},
@@ -35,12 +35,12 @@ TEST(BadDynamics, EachIsOneClearLineAtItsPlace) {
            Bad{"target.azimuths_deg = [10, 10]\ntarget.elevations_deg = [0, 0]\n",
                "task[0].target.azimuths[0]: 10 deg: expected the value at the arm's clamped base, 0 deg"},
            Bad{"target.azimuths_deg = [0, 200]\ntarget.elevations_deg = [0, 0]\n",
-               "task[0].target.azimuths[1]: 200 deg after 0 deg: expected neighbours that differ by at most "
-               "half a turn; azimuths continue beyond 180 deg"},
+               "task[0].target.azimuths[1]: 200 deg follows 0 deg: expected successive azimuths that differ "
+               "by at most 180 deg; azimuths may exceed 180 deg"},
            Bad{"target.azimuths_deg = [0, 60, -190]\ntarget.elevations_deg = [0, 0, 0]\n",
-               "task[0].target.azimuths[2]: -190 deg after 60 deg"},
+               "task[0].target.azimuths[2]: -190 deg follows 60 deg"},
            Bad{"target.bends = [[0, 0]]\n", "task[0].target.bends: 1 given: expected 3"},
-           Bad{"target.bends = [[0, 0], [0, -2], [0, 0]]\n", "leads through an elevation of 90 deg"},
+           Bad{"target.bends = [[0, 0], [0, -2], [0, 0]]\n", "passes through an elevation of 90 deg"},
            Bad{"target.bends = [[0, 2000], [0, 0], [0, 0]]\n",
                "expected a number from -1000 rad to 1000 rad"},
            Bad{"target.stretches = [1, 1.1, 1]\n", "target.stretches: requires variable_lengths = true"},
@@ -93,15 +93,17 @@ TEST(BadDynamics, ATargetIsTheCurveThatThePolynomialMakesOfIt) {
   };
   const std::string angles = "target.azimuths_deg = [0, 0, 0, 0]\ntarget.elevations_deg = [0, 85, 85, -40]\n";
   EXPECT_EQ(error(angles, "sections", 3), "no error");
-  EXPECT_THAT(error(angles, "polynomial", 4),
-              MatchesRegex(
-                  "x.toml:[0-9]+:[0-9]+: task\\[0\\].target: leads, as a polynomial \\(nodes = 4\\), through "
-                  "an elevation of [0-9.]+ deg: expected less than 90 deg, where the azimuth is undefined"));
+  EXPECT_THAT(
+      error(angles, "polynomial", 4),
+      MatchesRegex(
+          "x.toml:[0-9]+:[0-9]+: task\\[0\\].target: passes, as a polynomial \\(nodes = 4\\), through "
+          "an elevation of [0-9.]+ deg: expected less than 90 deg, where the azimuth is undefined"));
   EXPECT_EQ(error(angles, "polynomial", 5), "no error");
   // With bends too.
   const std::string bends = "target.bends = [[0, -1.5], [0, 0], [0, 0]]\n";
   EXPECT_EQ(error(bends, "sections", 3), "no error");
-  EXPECT_THAT(error(bends, "polynomial", 4), HasSubstr("task[0].target: leads, as a polynomial (nodes = 4)"));
+  EXPECT_THAT(error(bends, "polynomial", 4),
+              HasSubstr("task[0].target: passes, as a polynomial (nodes = 4)"));
   EXPECT_EQ(error(bends, "polynomial", 5), "no error");
 }
 
@@ -126,7 +128,7 @@ TEST(BadDynamics, TheArmHasToFitToo) {
               HasSubstr("task[0].gravity: leaves the plane of a planar arm: expected 0 along Z"));
   EXPECT_THAT(error_of_file(dynamics_arm("planar") +
                             dynamics_task("target.azimuths = [0, 1]\ntarget.elevations = [0, 0.1]\n")),
-              HasSubstr("task[0].target.elevations[1]: leaves the plane: expected 0 of a planar arm"));
+              HasSubstr("task[0].target.elevations[1]: leaves the plane: expected 0 for a planar arm"));
   EXPECT_THAT(error_of_file(replaced(dynamics_arm(), "[[arm", "base.rotation = [1, 0, 0, 0]\n[[arm") +
                             dynamics_task(bent_target)),
               HasSubstr("task[0]: the arm's base points along Z: expected an elevation below 90 deg"));

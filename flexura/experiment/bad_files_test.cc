@@ -70,9 +70,9 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"wrong unit", file_with("length = 2.0", "length_deg = 2.0"),
        "x.toml:4:1: arm.section[0].length_deg: wrong unit: expected length (m), length_mm (mm)"},
       {"two units", file_with("length = 2.0", "length = 2.0\nlength_mm = 2000"),
-       "x.toml:5:1: arm.section[0].length_mm: written twice: length is already in line 4"},
+       "x.toml:5:1: arm.section[0].length_mm: occurs twice: length is already in line 4"},
       {"duplicate key", file_with("length = 2.0", "length = 2.0\nlength = 3.0"),
-       "x.toml:5:10: 'length' is written twice: expected each key once"},
+       "x.toml:5:10: 'length' occurs twice: expected each key once"},
       {"unclosed text", file_with("\"planar\"", "\"planar"), "x.toml:2:"},
       {"unknown kind of task", file_with("\"move\"", "\"jump\""),
        "x.toml:8:8: task[0].kind = \"jump\": expected one of \"move\", \"hold\""},
@@ -125,13 +125,13 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"a text in a formula",
        file_with("kind = \"move\"\nduration = 2.0\nto.archings_pi = [0.1, 0.2]",
                  "kind = 'expression'\nduration = 2.0\narchings = 't + \"1\"'"),
-       "x.toml:10:17: task[0].archings[0]: contains a text: expected numbers, names and operators"},
+       "x.toml:10:17: task[0].archings[0]: contains a text in quotes: expected numbers, names and operators"},
       {"negative duration", file_with("duration = 2.0", "duration = -2.0"),
        "x.toml:9:12: task[0].duration = -2: expected a number from 1e-09 s"},
       {"no target", file_with("to.archings_pi = [0.1, 0.2]\n", ""),
        "x.toml:7:1: task[0].to: missing: expected a table (Target shape, as"},
       {"too few angles", file_with("[0.1, 0.2]", "[0.1]"),
-       "x.toml:10:4: task[0].to.archings: 1 given: expected 2, one for each section"},
+       "x.toml:10:4: task[0].to.archings: 1 given: expected 2 values, one per section"},
       {"bad angle", file_with("0.2]", "true]"),
        "x.toml:10:24: task[0].to.archings_pi[1] = true: expected a number from"},
       {"two ways", file_with("to.archings_pi", "to.cord_angles = [1, 2]\nto.archings_pi"),
@@ -139,14 +139,14 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"out of the plane", file_with("archings_pi = [0.1, 0.2]", "bends = [[0.1, 0.2], [0.1, 0]]"),
        "task[0].to.bends[0]: leaves the plane: expected bend_y = 0 for a planar arm"},
       {"planar words for a spatial arm", file_with("planar", "spatial"),
-       "x.toml:10:4: task[0].to.archings: is for planar arms: expected bends for a spatial one"},
+       "x.toml:10:4: task[0].to.archings: is for planar arms: expected bends for a spatial arm"},
       {"bends that are no pairs", file_with("archings_pi = [0.1, 0.2]", "bends = [[0.1], [0.1, 0, 0]]"),
        "task[0].to.bends[1] is an array of 3: expected an array of 2"},
       {"a quaternion that is none",
        file_with("[arm]\nkind = \"planar\"", "[arm]\nkind = \"spatial\"\nbase.rotation = [1, 1, 0, 0]"),
        "x.toml:3:6: arm.base.rotation: has the norm 1.41421: expected a unit quaternion"},
       {"rotation for a planar arm", file_with("[arm]", "[arm]\nbase.rotation = [1, 0, 0, 0]"),
-       "arm.base.rotation: is for spatial arms: expected base.tangent_deg for a planar one"},
+       "arm.base.rotation: is for spatial arms: expected base.tangent_deg for a planar arm"},
       {"limits the wrong way round", file_with("length = 2.0", "length = 2.0\nstretch_limits = [2, 1]"),
        "x.toml:5:1: arm.section[0].stretch_limits: expected the smaller factor first"},
       {"steps without end", file_with("[arm]", "clock.step = 1e-6\n[arm]"),
@@ -191,7 +191,7 @@ TEST(BadFiles, ThousandsOfBandsAreTooMany) {
   std::string text = "[arm]\nlook.bands.per_section = 1000\n";
   for (int i = 0; i < 6; ++i) text += "[[arm.section]]\nlength = 1\n";
   EXPECT_THAT(error_of_file(text + "[[task]]\nkind = 'hold'\nduration = 1\n"),
-              HasSubstr("makes 6000 bands: expected at most 4096"));
+              HasSubstr("results in 6000 bands: expected at most 4096"));
 }
 
 TEST(BadFiles, ATrapezoidFromWhereAFormulaIsNowhereTakesTooLong) {
@@ -205,14 +205,14 @@ TEST(BadFiles, ATrapezoidFromWhereAFormulaIsNowhereTakesTooLong) {
 TEST(BadFiles, KeysWrittenTwiceAreToldWithTheRest) {
   EXPECT_EQ(
       error_of_file("[arm]\nkind = 'planar'\nkind = 'spatial'\n[[arm.section]]\nlength = -1\nlength = 2\n"),
-      "x.toml:3:8: 'kind' is written twice: expected each key once\n"
-      "x.toml:6:10: 'length' is written twice: expected each key once\n"
+      "x.toml:3:8: 'kind' occurs twice: expected each key once\n"
+      "x.toml:6:10: 'length' occurs twice: expected each key once\n"
       "x.toml:5:10: arm.section[0].length = -1: expected a number from 1e-06 m to 1000000 m");
   EXPECT_EQ(error_of_file("[arm]\nkind = 'planar'\nkind = [\n 1]\n[[arm.section]]\nlength = -1\n"),
-            "x.toml:3:8: 'kind' is written twice: expected each key once")
+            "x.toml:3:8: 'kind' occurs twice: expected each key once")
       << "what follows a value of several lines is not judged";
   EXPECT_EQ(error_of_file("[arm]\nsection = [{length = 1, length = 2}]\n"),
-            "x.toml:2:34: 'length' is written twice: expected each key once")
+            "x.toml:2:34: 'length' occurs twice: expected each key once")
       << "nor what stands beside it";
 }
 

@@ -80,10 +80,10 @@ TEST(BadMaterialFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"density beside mass", rods_with("mass_per_length = 0.1", "mass_per_length = 0.1\ndensity = 1"),
        "arm.section[1].material.mass_per_length: is given together with density: expected one of them"},
       {"a bore as wide as the rod", rods_with("radius_mm = 0.7", "radius_mm = 0.7\ninner_radius_mm = 0.7"),
-       "x.toml:13:1: arm.section[0].material.inner_radius: 0.0007 m in a rod of radius 0.0007 m: expected "
-       "less"},
+       "x.toml:13:1: arm.section[0].material.inner_radius: 0.0007 m in a rod of radius 0.0007 m: expected a "
+       "smaller radius"},
       {"a bore as wide as the tube", rods_with("radius_mm = 0.7", "inner_radius = [0, 0.02]"),
-       "arm.section[0].material.inner_radius: 0.02 m in a rod of radius 0.02 m: expected less"},
+       "arm.section[0].material.inner_radius: 0.02 m in a rod of radius 0.02 m: expected a smaller radius"},
       {"modes", rods_with("bend = 6", "bend = 21"),
        "arm.section[0].material.modes.bend = 21: expected a whole number from 0 to 20"},
       {"one node", rods_with("density = 6450", "nodes = 1"),
@@ -106,17 +106,15 @@ TEST(BadMaterialFiles, EachGetsALineWithPlaceValueAndExpectation) {
        "x.toml:18:1: arm.section[1]: has no material: expected material.youngs_modulus or "
        "material.stiffness, because the arm's model is \"static\""},
       {"a tendon outside the tube", rods_with("radius = 0.01\n", "radius = 0.011\n"),
-       "arm.tendon[0]: runs outside the tube: expected at most 0.0108 m off the backbone in section 2, 0.484 "
+       "arm.tendon[0]: leaves the tube: expected at most 0.0108 m from the backbone in section 2, 0.484 "
        "m "
        "from the base, not 0.011 m"},
       {"a tendon that spreads out of it", rods_with("turns = 0.5", "end_radius = 0.03"),
-       "arm.tendon[0]: runs outside the tube: expected at most 0.02 m"},
-      {"a polynomial out of it", rods_with("turns = 0.5", "x = [0, 0, 1]"),
-       "arm.tendon[0]: runs outside the tube"},
-      {"a polynomial past all bounds", rods_with("turns = 0.5", "x = [1e9, -1e9, 1e9]"),
-       "runs outside the tube"},
+       "arm.tendon[0]: leaves the tube: expected at most 0.02 m"},
+      {"a polynomial out of it", rods_with("turns = 0.5", "x = [0, 0, 1]"), "arm.tendon[0]: leaves the tube"},
+      {"a polynomial past all bounds", rods_with("turns = 0.5", "x = [1e9, -1e9, 1e9]"), "leaves the tube"},
       {"a tendon beyond the arm", rods_with("[[arm.tendon]]\nsection = 2", "[[arm.tendon]]\nsection = 3"),
-       "x.toml:25:1: arm.tendon[0].section: is section 3 of an arm of 2: expected 1 to 2"},
+       "x.toml:25:1: arm.tendon[0].section: 3: expected a section of the arm, 1 to 2"},
       {"tendon 0", rods_with("[[arm.tendon]]\nsection = 2", "[[arm.tendon]]\nsection = 0"),
        "x.toml:25:11: arm.tendon[0].section = 0: expected a whole number from 1 to"},
       {"a negative radius", rods_with("radius = 0.01\n", "radius = -0.01\n"),
@@ -124,7 +122,7 @@ TEST(BadMaterialFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"a negative compliance", rods_with("turns = 0.5", "compliance = -1"),
        "arm.tendon[0].compliance = -1: expected a number from 0"},
       {"a load beyond the arm", rods_with("[[arm.load]]\nsection = 2", "[[arm.load]]\nsection = 9"),
-       "arm.load[0].section: is section 9 of an arm of 2: expected 1 to 2"},
+       "arm.load[0].section: 9: expected a section of the arm, 1 to 2"},
       {"an infinite load", rods_with("force = [1, 0, 0]", "force = [1, inf, 0]"),
        "x.toml:31:13: arm.load[0].force[1] = inf: expected a number from"},
       {"a load that is no number", rods_with("force = [1, 0, 0]", "moment = [nan, 0, 0]"),

@@ -36,7 +36,7 @@ TEST(BadServo, EachIsOneClearLine) {
   for (const auto& [task, words] : {
            std::pair<std::string, std::string>{"", "task[0].target: missing"},
            {"target = []\n", "empty array: expected an array of 1 to"},
-           {"target = [{}]\n", "target[0]: has no shape: expected a shape in one way"},
+           {"target = [{}]\n", "target[0]: has no shape: expected exactly one of bends"},
            {"target = [{" + bends + ", position = [0, 0, 1]}]\n", "in more than one way"},
            {"target = [{azimuths = [0, 1]}]\n", "different numbers of azimuths and elevations"},
            {"target = [{azimuths = [0, 1], elevations = [0]}]\n", "expected an array of 2 to"},
@@ -60,7 +60,7 @@ TEST(BadServo, EachIsOneClearLine) {
            {"law = \"potential\"\ncameras = [\"side\", \"front\"]\ntarget = [{" + bends + "}]\n",
             "task[0].law: \"potential\" reads camera side as the plane XOY"},
            {"measure = \"flow\"\ntarget = [{" + bends + "}]\n",
-            "task[0].measure: \"flow\" carries the angles of chords"},
+            "task[0].measure: \"flow\" measures the angles of chords"},
            {"law = \"chords\"\nmeasure = \"flow\"\nanchor = 0\ntarget = [{" + bends + "}]\n",
             "task[0].anchor = 0: expected a number above 0"},
            {"settle = 5\ntimeout = 4\ntarget = [{" + bends + "}]\n",
@@ -69,8 +69,8 @@ TEST(BadServo, EachIsOneClearLine) {
            {"give_up_after = 0.1\ntarget = [{" + bends + "}]\n",
             "task[0].give_up_after: 0.1 s: expected more than hold_after"},
            {"target = [{bends = [[0, 0], [0, 0], [0, 0], [0, 0]]}]\n",
-            "4 given: expected 3, one for each section"},
-           {"target = [{" + bends + ", stretches = [1]}]\n", "1 given: expected 3, one for each section"},
+            "4 given: expected 3 values, one per section"},
+           {"target = [{" + bends + ", stretches = [1]}]\n", "1 given: expected 3 values, one per section"},
            {"target = [{" + bends + ", missed = 0.1}]\n", "target[0].missed: unknown key"},
            {"target = [{time = 1e300, " + bends + "}]\n", "expected a number from 0 s to 10000 s"},
            {"timeout = inf\ntarget = [{" + bends + "}]\n", "task[0].timeout = inf"},
@@ -106,9 +106,9 @@ TEST(BadServo, CamerasThatNoStepCanFollow) {
     std::string rate, task, words;
   };
   for (const Case& bad :
-       {Case{"1e-300", "", "task[0].step: not given, and a frame of the slower camera takes 1e+300 s"},
-        Case{"0.01", "", "takes 100 s: expected a step from 0.0001 s to 10 s"},
-        Case{"100000", "", "takes 1e-05 s"}, Case{"0.01", "step = 0.05\n", ""}}) {
+       {Case{"1e-300", "", "task[0].step: missing, and the frame of the slower camera, 1e+300 s"},
+        Case{"0.01", "", "100 s, cannot be used instead: expected a step from 0.0001 s to 10 s"},
+        Case{"100000", "", "1e-05 s, cannot be used"}, Case{"0.01", "step = 0.05\n", ""}}) {
     std::string file = servo_file(bad.task + servo_target, {.sensor = "exposure = 1e-6"});
     for (std::size_t at = 0; (at = file.find("frame_rate = 30", at)) != std::string::npos; ++at)
       file.replace(at, 15, "frame_rate = " + bad.rate);
@@ -152,7 +152,8 @@ std::string complaint_of_pictures(const std::string& picture) {
 
 TEST(BadServo, PicturesOfAnotherSizeOrDepth) {
   const std::string small = complaint_of_pictures("P2 2 2 255 1 2 3 4\n");
-  EXPECT_NE(small.find("2 x 2 px: expected 320 x 240, as camera front takes them"), std::string::npos)
+  EXPECT_NE(small.find("2 x 2 px: expected 320 x 240 px, the picture size of camera front"),
+            std::string::npos)
       << small;
   std::string words = "P2 320 240 65535\n";
   for (int i = 0; i < 320 * 240; ++i) words += std::to_string(7 * i % 65536) + '\n';

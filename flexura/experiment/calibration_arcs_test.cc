@@ -96,17 +96,17 @@ TEST(EtalonLoop, RefusesKeysThatCountForNothing) {
     return problems;
   };
   const LoopRig rig = {.size = 0.5};
-  EXPECT_THAT(
-      problems_of(etalon_rig("method = \"etalon\"\nzooms = [1, 2]\n"
-                             "loop = { turn_deg = 1, slide = 0.1, zoom_step = 0.1, arc_deg = 100 }\n",
-                             rig)),
-      ::testing::ElementsAre("task[0].loop.turn: applies only to etalon-paper: expected no such key",
-                             "task[0].loop.slide: applies only to etalon-paper: expected no such key",
-                             "task[0].loop.zoom_step: applies only to etalon-paper: expected no such key",
-                             "task[0].loop.arc: applies only to arcs and arcs-paper: expected no such key",
-                             "task[0].zooms: applies only to bundle: expected no such key"));
+  EXPECT_THAT(problems_of(etalon_rig("method = \"etalon\"\nzooms = [1, 2]\n"
+                                     "loop = { turn_deg = 1, slide = 0.1, zoom_step = 0.1, arc_deg = 100 }\n",
+                                     rig)),
+              ::testing::ElementsAre(
+                  "task[0].loop.turn: applies only to etalon-paper: expected this key to be absent",
+                  "task[0].loop.slide: applies only to etalon-paper: expected this key to be absent",
+                  "task[0].loop.zoom_step: applies only to etalon-paper: expected this key to be absent",
+                  "task[0].loop.arc: applies only to arcs and arcs-paper: expected this key to be absent",
+                  "task[0].zooms: applies only to bundle: expected this key to be absent"));
   const LoopRig arcs = arcs_cameras({WrongStart{}, WrongStart{}});
-  const std::string count = ": applies only to bundle and bundle-etalon: expected no such key";
+  const std::string count = ": applies only to bundle and bundle-etalon: expected this key to be absent";
   EXPECT_THAT(
       problems_of(arcs_rig(
           "method = \"arcs\"\ncamera_prior = { focal_std = 0.2, principal_point_std = 3, zero_std = 0.1, "

@@ -15,18 +15,17 @@
 
 namespace flexura {
 
-/// Command list of a run, as a table and in the log (docs/results.md). For every clock step it has the
-/// position of each motor and its mean step rate since the previous clock step. The first row has the motors'
-/// positions at the start of the run.
+/// Command list of a run, as a table and in the log (docs/results.md). Each row has the positions of the
+/// motors at a clock step, and their mean step rates since the previous clock step. The first row has the
+/// motors' positions at the start of the run.
 class DriveCommands {
  public:
   /// Starts the new table `file`. Throws std::system_error if the file exists or cannot be written.
   DriveCommands(Arm arm, Drive drive, const std::filesystem::path& file);
 
-  /// Adds the arm's state that the motors have to reach at `time` (s), which must be later than the previous
-  /// time.
+  /// Adds the arm's state that the motors must reach at `time` (s). Times must increase.
   void step(double time, const ArmState& state, Recorder& recorder);
-  /// Returns the motors' positions after the arm's motion through these states.
+  /// Returns the motors' positions after the arm has moved through these states.
   [[nodiscard]] std::vector<std::int64_t> positions_after(std::span<const ArmState> way) const;
   /// Completes the table.
   void close();

@@ -207,12 +207,12 @@ TEST(BadDynamicFiles, EachGetsALineWithPlaceValueAndExpectation) {
   EXPECT_THAT(error_of_file(moving_with("until = 2", "until = 0.5")),
               HasSubstr("arm.payload[0].until: is not after from"));
   EXPECT_THAT(error_of_file(moving_with("section = 1\nmass", "section = 2\nmass")),
-              HasSubstr("arm.payload[0].section: is section 2 of an arm of 1"));
+              HasSubstr("arm.payload[0].section: 2: expected a section of the arm, 1 to 1"));
   EXPECT_THAT(error_of_file(moving_with("friction = 0.4", "stiffness = 0")),
               HasSubstr("arm.contact.stiffness = 0"));
   // The paper's arcs are of an arm that does not sag.
   EXPECT_THAT(error_of_file(moving_rod + std::string("[[task]]\nkind = \"calibrate\"\nmethod = \"arcs\"\n")),
-              HasSubstr("task[0].method: needs an arm of arcs, but an elastic arm sags"));
+              HasSubstr("task[0].method: needs a model of arcs, but an elastic arm sags"));
   EXPECT_THAT(error_of_file(moving_with("model = \"dynamic\"", "model = \"dynamic\"\ntime_step = 0")),
               HasSubstr("arm.time_step"));
 }

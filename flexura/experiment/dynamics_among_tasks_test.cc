@@ -145,7 +145,7 @@ TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
                               const std::vector<std::string>& notes) {
     for (const char* name : {"second", "third"})
       EXPECT_THAT(caveats,
-                  testing::Contains(fmt::format("{}: only the straight path to its target is checked: the "
+                  testing::Contains(fmt::format("{}: only a straight path to the target is checked: the "
                                                 "motion is not simulated, because the run ends with first",
                                                 name)));
     EXPECT_THAT(notes, testing::Contains(HasSubstr("second: the potential's force has the sign -1")));

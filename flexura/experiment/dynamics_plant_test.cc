@@ -134,8 +134,10 @@ TEST(DynamicsPlant, IsToldOfWhereTheCheckJudgesAnotherShape) {
     Quiet quiet;
     return check_experiment_safety(parse_experiment(file, "x.toml", {{}, {}}), quiet).caveats;
   };
-  EXPECT_THAT(caveats(172), testing::Contains(testing::HasSubstr("the check uses arcs, whose tip is up to")));
-  EXPECT_THAT(caveats(5), testing::Not(testing::Contains(testing::HasSubstr("the check uses arcs"))));
+  EXPECT_THAT(caveats(172), testing::Contains(testing::HasSubstr(
+                                "the check approximates the arm by arcs, with an error of up to")));
+  EXPECT_THAT(caveats(5),
+              testing::Not(testing::Contains(testing::HasSubstr("the check approximates the arm by arcs"))));
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ TEST(DynamicsFully, WhatBreaksALimitAfterAServoIsUnsafe) {
     const Experiment experiment = parse_experiment(file, "x.toml", {{"record.report=false"}, {}});
     const SafetyReport report = check_experiment_safety(experiment, quiet);
     EXPECT_TRUE(report.is_safe());
-    EXPECT_THAT(report.caveats, Contains(HasSubstr("only the straight path to its target is checked")));
+    EXPECT_THAT(report.caveats, Contains(HasSubstr("only a straight path to the target is checked")));
     const TemporaryFolder folder;
     const RunResult result = run_experiment(experiment, make_new_folder(folder.path() / "results"), quiet);
     EXPECT_EQ(result.outcome, is_fast ? RunOutcome::unsafe : RunOutcome::done)

@@ -12,14 +12,14 @@
 
 namespace flexura {
 
-/// An experiment file: a rig and its tasks, which are executed one after another.
+/// An experiment file: a rig and its tasks. The tasks are executed one after another.
 struct Experiment : Setup {
   std::vector<TaskConfig> task;  ///< Tasks in the order of execution.
 };
 
 const Table<Experiment>& fields_of(const Experiment*);
 
-/// Changes that the command line makes in a file before it is read.
+/// Changes by the command line that are made in a file before it is checked.
 struct Overrides {
   std::vector<std::string> sets;     ///< Changes "path=value" in TOML, such as "arm.section.0.length=2.5".
   std::optional<std::int64_t> seed;  ///< Seed that replaces the file's seed.
@@ -29,7 +29,7 @@ struct Overrides {
 /// with all problems.
 [[nodiscard]] Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides = {});
 
-/// Reads and checks an experiment from TOML text, without includes and files of keyframes. `source`: name of
+/// Reads and checks an experiment from TOML text. The text must not refer to other files. `source`: name of
 /// the text in errors.
 [[nodiscard]] Experiment parse_experiment(std::string_view text, const std::string& source,
                                           const Overrides& overrides = {});

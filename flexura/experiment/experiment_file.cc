@@ -178,7 +178,7 @@ void check_start(const Experiment& experiment, const Node& document) {
       {place_of_obstacle(document, deep->obstacle),
        fmt::format("obstacle[{}]: at the start, the arm's centerline is inside {} (the arm is {:.3g} mm deep "
                    "at {:.4g} m from its base), and contact cannot push it out: expected the centerline "
-                   "outside (by the obstacle's place, its ignore_base, arm.base or arm.initial)",
+                   "outside (change the obstacle's position, its ignore_base, arm.base or arm.initial)",
                    deep->obstacle, obstacles(truth.obstacles).at(deep->obstacle).name, 1e3 * deep->depth,
                    deep->s_rest)}});
 }
@@ -200,7 +200,7 @@ void check_whole(const Experiment& experiment, const Node& document) {
     frames += duration * camera.sensor.frame_rate;
   if (experiment.record.cameras && frames > max_frames) {
     refuse("record", "cameras",
-           fmt::format("{:.3g} images in {:.6g} s by the cameras' frame rates: expected at most {:.6g}",
+           fmt::format("{:.3g} images in {:.6g} s at the cameras' frame rates: expected at most {:.6g}",
                        frames, duration, max_frames));
   }
   check_start(experiment, document);
@@ -216,7 +216,8 @@ void set_value(Node& document, const std::string& set) {
   path.remove_prefix(std::min(path.find_first_not_of(' '), path.size()));
   path = path.substr(0, path.find_last_not_of(' ') + 1);
   if (path.substr(0, path.find('.')) == "include")
-    throw input_error(source, "include: files are read before values are set; write it into the file", 1, 1);
+    throw input_error(
+        source, "include: cannot be set, because files are included first: write it into the file", 1, 1);
   Node value =
       parse_toml_value(std::string_view(set).substr(equals + 1), source, 1, static_cast<int>(equals) + 2);
   const std::string error = set_at_path(document, path, std::move(value));

@@ -100,7 +100,7 @@ TEST_F(ExportMp4, SaysWhenNoFrameArrived) {
     (void)exported();
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("no frame arrived"));
+    EXPECT_THAT(error.what(), HasSubstr("at least one frame arrived"));
   }
 }
 

@@ -86,8 +86,9 @@ TEST(ArcsLoop, StopsWhereBothCamerasTrulyLookFromOneSide) {
   CalibrationBench bench(arcs_rig("method = \"arcs\"\n", rig));
   const LoopResult result = bench.calibrate();
   EXPECT_FALSE(result.is_done);
-  EXPECT_THAT(result.reason, HasSubstr("both cameras look from one side: their axes are seen to be"));
-  EXPECT_THAT(result.reason, HasSubstr("at the limit of its commands"));
+  EXPECT_THAT(result.reason,
+              HasSubstr("both cameras look from one side: the angle between their axes is observed to be"));
+  EXPECT_THAT(result.reason, HasSubstr("at the limit of its range"));
   bench.expect_back();
 }
 

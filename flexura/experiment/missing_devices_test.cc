@@ -120,8 +120,8 @@ TEST(MissingDevices, AServoThatFollowsSaysWhichHeadIsMissingAndSendsNothing) {
   const ServoResult result = bench.servo(ports, notes);
   EXPECT_FALSE(result.is_done);
   EXPECT_EQ(result.reason,
-            "camera side has no head: it cannot pan, tilt or zoom, and this servo follows the arm with "
-            "both cameras");
+            "camera side has no head: it cannot pan, tilt or zoom, and the servo needs both heads to follow "
+            "the arm");
   EXPECT_TRUE(notes.sent.empty());
   EXPECT_FALSE(bench.ports().cameras[0].head->read().value().moving);
 }

@@ -23,15 +23,14 @@ struct Played {
   double time = 0;         ///< Time of the last clock step, s.
   ArmState last;
   bool is_cancelled = false;
-  std::string failure;  ///< Why a task failed and ended the run, or "".
+  std::string failure;  ///< Reason if a task failed and ended the run, or "".
 };
 
 /// Plays an experiment's schedule step by step, and records the run with a RunRecorder.
 class Player {
  public:
   /// `make_rig` is called if cameras are recorded, a task needs a rig, or the true arm differs from the
-  /// model. A rig performs nothing unsafe. If the schedule is unsafe, tasks of the rig are skipped, and only
-  /// a simulated rig moves.
+  /// model. If the schedule is unsafe, tasks that need a rig are skipped, and only a simulated rig moves.
   Player(const Experiment& experiment, RunRecorder& run_recorder, Progress& progress, RunWatcher* watcher,
          const RigFactory& make_rig);
 
@@ -43,7 +42,8 @@ class Player {
   /// Returns the progress of the run.
   [[nodiscard]] RunProgress& progress() { return progress_; }
 
-  /// Plays all steps, up to the first impossible state, the end of the run by a task, or its cancellation.
+  /// Plays all steps. Stops before the first impossible state, when a task ends the run, or when the run is
+  /// cancelled.
   Played play();
 
  private:

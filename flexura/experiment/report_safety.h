@@ -8,16 +8,17 @@
 
 namespace flexura {
 
-/// Largest number of violations with separate drawings.
+/// Largest number of violations that get a drawing each.
 inline constexpr std::size_t max_pictured_violations = 4;
 
-/// Adds the schedule's state at `time` (s) to a report with times and states, unless the report has a state
-/// at that time. The time may be between two steps of the clock or of the log. Adds nothing after the
-/// report's last state, and no impossible state.
+/// Inserts the schedule's state at `time` (s) into the report's times and states, unless the report has a
+/// state at that time. The time may be between two steps of the clock or of the log. Ignores impossible
+/// states and times after the report's last state.
 void add_state(double time, const Schedule& schedule, ReportData& data);
 
-/// Adds the result of the check to a report with times and states. Also adds the schedule's states at the
-/// worst moments of the most informative violations, one of each group, up to the end of the run.
+/// Adds the result of the safety check to a report that has times and states. Selects the most informative
+/// violations, one per group. Also inserts the schedule's states at their worst moments, up to the end of the
+/// run.
 void add_safety(const SafetyReport& safety, const Schedule& schedule, ReportData& data);
 
 }  // namespace flexura

@@ -94,7 +94,7 @@ void conclude(const Played& played, RunResult& result) {
   if (has_failed(played)) result.outcome = RunOutcome::failed, result.reasons.push_back(played.failure);
   if (!played.is_cancelled) return;
   result.outcome = RunOutcome::cancelled;
-  result.reasons.insert(result.reasons.begin(), fmt::format("it was stopped at {:.6g} s", played.time));
+  result.reasons.insert(result.reasons.begin(), fmt::format("the run was stopped at {:.6g} s", played.time));
 }
 
 // Adds the results of the tasks, kind by kind, in the order of the kinds.

@@ -18,8 +18,8 @@ enum class RunOutcome {
   done,
   unsafe,     ///< A task would violate a limit of the arm or cause a contact; the run is simulated for
               ///< inspection.
-  failed,     ///< A calibration, a servo or a dynamics task failed, and ended the run.
-  cancelled,  ///< Progress::cancelled: the log ends with the last step that was played.
+  failed,     ///< A calibration, a servo or a dynamics task failed and ended the run.
+  cancelled,  ///< The run was cancelled (Progress::cancelled). The log ends with the last played step.
 };
 
 /// Returns "done", "unsafe", "failed" or "cancelled", the names used in summaries.
@@ -28,10 +28,10 @@ enum class RunOutcome {
 /// Result of a run.
 struct RunResult {
   RunOutcome outcome = RunOutcome::done;
-  std::vector<std::string> reasons;   ///< Why the run is not done, one line each.
+  std::vector<std::string> reasons;   ///< Reasons why the outcome is not `done`, one line each.
   std::string headline;               ///< Result of the run in one line.
   std::vector<TaskOutcome> outcomes;  ///< Results of the tasks.
-  std::filesystem::path folder;       ///< The given folder, which has all files of the run.
+  std::filesystem::path folder;       ///< Folder with all files of the run, as given.
   Node summary;                       ///< Content of summary.json.
 };
 
@@ -39,8 +39,8 @@ struct RunResult {
 /// the experiment as run, the log, the summary, the report and its figures (docs/results.md). Equal
 /// experiments write equal bytes, with or without a watcher. A cancelled run writes its results so far,
 /// except the report, its figures and tables. `make_rig` makes the rig if cameras are recorded or a task
-/// needs a rig; default: the file's equipment, or a simulated rig. Throws InputError if there is no task, and
-/// std::runtime_error if a file cannot be written.
+/// needs a rig. By default it makes the file's equipment, or a simulated rig. Throws InputError if there is
+/// no task, and std::runtime_error if a file cannot be written.
 [[nodiscard]] RunResult run_experiment(const Experiment& as_read, const std::filesystem::path& folder,
                                        Progress& progress, RunWatcher* watcher = nullptr,
                                        const RigFactory& make_rig = rig_of);

@@ -12,16 +12,16 @@
 
 namespace flexura {
 
-/// Returns the results of the tasks in their order, then of the true arm and of the recorded cameras. The
-/// true arm is included if its tip ends elsewhere than commanded and no task uses measurements.
+/// Returns the results of the tasks in their order, then those of the true arm and of the recorded cameras.
+/// The true arm is included if its tip does not end where commanded and no task uses measurements.
 /// `true_tip_off`: final distance of the true tip from the commanded tip, m, if known. `frames`: number of
 /// frames of each camera in the log.
 [[nodiscard]] std::vector<TaskOutcome> run_outcomes(const Player& player, const Played& played,
                                                     std::optional<double> true_tip_off,
                                                     const std::map<std::string, std::int64_t>& frames);
 
-/// Returns the whole run's result in one line: the total of its tasks. If the run is not done, the line
-/// begins with how the run ended. `time`: time of the end, s.
+/// Returns the run's result in one line: a summary of its tasks' results. For an outcome other than `done`,
+/// the line begins with the outcome. `time`: time of the end, s.
 [[nodiscard]] std::string headline_of(RunOutcome outcome, double time,
                                       const std::vector<TaskOutcome>& outcomes);
 

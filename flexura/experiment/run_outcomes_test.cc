@@ -67,7 +67,7 @@ TEST(TaskOutcome, OfACalibrationNamesWhatIsNotReached) {
   run.truth.emplace().angle = 0.002 * degree;
   outcome = calibration_outcome(run);
   EXPECT_TRUE(outcome.is_reached);
-  EXPECT_EQ(outcome.text, "axes 89.990 +- 0.01 degrees (required 0.02): reached; in truth 90.002");
+  EXPECT_EQ(outcome.text, "axes 89.990 +- 0.01 degrees (required 0.02): reached; true value: 90.002");
   run.result.is_done = false, run.result.reason = "no markers";
   EXPECT_EQ(calibration_outcome(run).text, "not calibrated: no markers");
 }
@@ -77,8 +77,9 @@ TEST(TaskOutcome, OfALoopHasItsOffsets) {
   run.name = "cylinder", run.accepted = 0.05;
   run.loop.emplace().is_done = true;
   run.loop->pictures = {7, 8}, run.loop->angle = 0.01 * degree;
-  EXPECT_EQ(calibration_outcome(run).text,
-            "offsets within 0.05 px after 15 pictures: reached; axes 90.010 degrees as seen");
+  EXPECT_EQ(
+      calibration_outcome(run).text,
+      "offsets within 0.05 px after 15 pictures: reached; observed angle between the axes: 90.010 degrees");
 }
 
 TEST(TaskOutcome, LengthsAreReadable) {
@@ -107,7 +108,7 @@ TEST(RunOutcome, IsInSummaryAndReport) {
   EXPECT_EQ(*outcomes[2].find("text")->as<std::string>(), "held for 0.1 s");
   const std::string page = read_text_file(folder.path() / "results/report.html", 1 << 24);
   EXPECT_THAT(page, HasSubstr("<p class=\"outcome\">3 of 3 motions done</p>"));
-  EXPECT_THAT(page, HasSubstr("<strong>to &amp; fro</strong> at its shape after 0.2 s"));
+  EXPECT_THAT(page, HasSubstr("<strong>to &amp; fro</strong> at the target shape after 0.2 s"));
 }
 
 TEST(RunOutcome, OfAnUnsafeRunSaysSo) {

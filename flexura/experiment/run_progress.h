@@ -9,8 +9,8 @@
 
 namespace flexura {
 
-/// Progress of a run by its work. The parts are the checks, the report, and for each task its simulation, its
-/// execution and its results.
+/// Progress of a run as the share of its work that is done. The work has these parts: the checks, the report,
+/// and for each task its simulation, its execution and its results.
 class RunProgress {
  public:
   RunProgress(Progress& whole, const Experiment& experiment, const TaskRunners& tasks);
@@ -21,7 +21,7 @@ class RunProgress {
   [[nodiscard]] Progress& simulation(std::size_t i) { return work_.piece(2 + 3 * i); }
   /// Returns the progress of task `i` while it is played or performed.
   [[nodiscard]] Progress& task(std::size_t i) { return work_.piece(3 + 3 * i); }
-  /// Returns the progress with which task `i` computes its results.
+  /// Returns the progress of task `i` while it computes its results.
   [[nodiscard]] Progress& results(std::size_t i) { return work_.piece(4 + 3 * i); }
 
  private:

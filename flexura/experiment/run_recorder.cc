@@ -65,10 +65,10 @@ std::optional<Chapter> RodRecord::chapter(const Arm& arm, const std::vector<Obst
   Chapter chapter{
       .heading = "The true arm",
       .text = fmt::format("The simulated arm is an elastic rod, {} under the forces of its tendons, weight "
-                          "and loads. The pictures above show the arm as commanded.",
+                          "and loads. The pictures above show the commanded arm.",
                           is_moving ? "in motion" : "at rest"),
       .figures = {{"true-arm", two_shapes_picture(arm, obstacles, *last, commanded,
-                                                  "the true arm at the end, and as commanded (line)")}},
+                                                  "the true arm at the end, and the commanded arm (line)")}},
       .is_first_tall = false};
   if (!pulls.series.empty()) chapter.figures.push_back({"tensions", std::move(pulls)});
   chapter.figures.push_back({"tip-off", std::move(tip)});
@@ -225,7 +225,7 @@ void RunRecorder::report_lost_steps(double time, const std::vector<double>& lost
     if (lost[i] != lost_[i])
       log_.event(
           time, Recorder::Level::warning, "drive",
-          fmt::format("the motor of axis {} loses {:.0f} microsteps without knowledge of its controller",
+          fmt::format("the motor of axis {} loses {:.0f} microsteps, which its controller does not notice",
                       axis_names_.at(i), lost[i] - lost_[i]));
     lost_[i] = lost[i];
   }

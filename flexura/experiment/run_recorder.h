@@ -24,43 +24,43 @@ namespace flexura {
 [[nodiscard]] std::optional<EnergyMessage> energy_message(double time,
                                                           const std::optional<RodEnergy>& energy);
 
-/// Data of a true arm that is an elastic rod, for the report.
+/// Data for the report of a true arm that is an elastic rod.
 struct RodRecord {
   std::vector<double> times;                  ///< In s.
   std::vector<std::vector<double>> tensions;  ///< Tensions of the tendons at each time, N.
   std::vector<double> off;             ///< Distance of the true tip from the commanded tip at each time, m.
   std::vector<RodEnergy> energies;     ///< Energies at each time; empty for a rod without inertia.
   std::vector<double> contact_forces;  ///< Sum of the magnitudes of all contact forces at each time, N.
-  std::optional<Backbone> last;        ///< Backbone at the last of these times.
+  std::optional<Backbone> last;        ///< Backbone at the last time.
 
-  /// Returns the chapter of the report; std::nullopt for an arm that is not a rod. `commanded`: the last
-  /// commanded shape of `arm`.
+  /// Returns the report's chapter on the true arm; std::nullopt for an arm that is not a rod. `commanded`:
+  /// the last commanded shape of `arm`.
   [[nodiscard]] std::optional<Chapter> chapter(const Arm& arm, const std::vector<ObstacleConfig>& obstacles,
                                                const Backbone& commanded) const;
 };
 
-/// Records a run while it is played: writes the log and collects the data of the report.
+/// Records a run while it is played: writes the log and collects data for the report.
 class RunRecorder {
  public:
   /// `watcher` receives the events and the messages of tasks; may be null.
   RunRecorder(const std::filesystem::path& folder, const ArmModel& model, RunWatcher* watcher = nullptr);
 
-  /// Sets the expected last clock step. Tasks may take longer.
+  /// Sets the expected number of the last clock step. The run may take more steps.
   void expect(std::size_t last_step);
   /// Logs the scene, for programs that display logs.
   void draw_scene(const Experiment& experiment);
-  /// Takes the cameras for the report's 3D view.
+  /// Adds the experiment's cameras to the report's 3D view.
   void add_cameras(const Experiment& experiment) { space_.add_cameras(experiment); }
   void state(std::size_t step, double time, const ArmState& state);
-  /// Logs the readings of the rig's devices, and the true arm if it is known, once for each time of the rig's
-  /// clock.
+  /// Logs the readings of the rig's devices, and the true arm if it is known. Logs nothing if the rig's time
+  /// has not changed since the last call.
   void readings(Rig& rig);
   /// Sets the axis names of a drive for events.
   void name_axes(const Drive& drive);
   void write_commands(const Drive& drive, const std::filesystem::path& file);
-  /// Adds a step to the command list. Needed for every step, because a command list has no gaps.
+  /// Adds a clock step to the command list. The caller must add every clock step.
   void command(double time, const ArmState& state);
-  /// Returns the motor positions after the arm's motion through these states; std::nullopt without a command
+  /// Returns the motor positions after the arm has moved through these states; std::nullopt without a command
   /// list.
   [[nodiscard]] std::optional<std::vector<std::int64_t>> motors_after(std::span<const ArmState> way) const;
   /// Returns the log of tasks' messages and events.

@@ -355,7 +355,7 @@ TEST(Overrides, ChangeValuesUnderTheSameChecks) {
   };
   EXPECT_THAT(error("arm.section.0.length=-1"),
               HasSubstr(":1:22: arm.section[0].length = -1: expected a number from 1e-06 m"));
-  EXPECT_THAT(error("arm.section.8.length=1"), HasSubstr("index 8 is outside an array of 8"));
+  EXPECT_THAT(error("arm.section.8.length=1"), HasSubstr("index 8 is outside an array of size 8"));
   EXPECT_THAT(error("arm.base.position.1=3"),
               HasSubstr("entry 1 cannot be set because the array does not exist"));
   EXPECT_THAT(error("arm.section.0.lenght=1"), HasSubstr("did you mean \"length\"?"));
@@ -369,7 +369,7 @@ TEST(Overrides, AreToldOfAllAtOnce) {
     (void)load_experiment(paper_arm, {.sets = {"arm.section.8.length=1", "seed=3", "nothing"}, .seed = {}});
     FAIL() << "no error";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("index 8 is outside an array of 8"));
+    EXPECT_THAT(error.what(), HasSubstr("index 8 is outside an array of size 8"));
     EXPECT_THAT(error.what(), HasSubstr("--set nothing: expected path=value"));
   }
 }

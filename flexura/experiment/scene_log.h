@@ -19,21 +19,22 @@ namespace flexura {
 /// Also returns the frame "upright", the world with its Y as z, for programs that draw z upwards.
 [[nodiscard]] FramesMessage frames_message(const Experiment& experiment);
 
-/// Returns a camera's lens at a zoom, as at `time` s.
+/// Returns a camera's lens at its zoom, as a message for `time`, s.
 [[nodiscard]] CameraCalibrationMessage calibration_message(const Camera& camera, double time, double zoom);
 
-/// Logs one camera's lens and the pose of its optical frame, for programs that draw logs. Each is logged at
-/// the start and after changes, at most once per frame of the camera.
+/// Logs one camera's lens and the pose of its optical frame, for programs that display logs. Logs both at the
+/// start and after changes, at most once per frame of the camera.
 class CameraDrawing {
  public:
-  /// Takes the true camera and its model, by whose start its axes count. Logs the lens at the start; the pose
-  /// at the start is in frames_message.
+  /// `camera`: the true camera. `model`: its model; reported axis positions are relative to the model's
+  /// start. Logs the lens at the start; the pose at the start is in frames_message.
   CameraDrawing(const CameraConfig& camera, const CameraConfig& model, Recorder& recorder);
 
   [[nodiscard]] const std::string& name() const { return camera_.config().name; }
-  /// Returns what the camera's axes report at the start.
+  /// Returns the axis positions that the camera reports at the start.
   [[nodiscard]] const CameraStance& first_report() const { return first_report_; }
-  /// Logs what has changed if the axes report this at `time` s.
+  /// Logs the lens and the pose if they differ from the last logged ones. `reported`: axis positions at
+  /// `time`, s.
   void report(double time, const CameraStance& reported, Recorder& recorder);
 
  private:
@@ -45,11 +46,11 @@ class CameraDrawing {
   double logged_at_ = 0;  // s
 };
 
-/// Returns the arm along `backbone` as polylines. Each has the mean thickness of its section, rounded to
-/// micrometres.
+/// Returns the arm along `backbone` as polylines. Each polyline has the mean thickness of its section,
+/// rounded to micrometres.
 [[nodiscard]] SceneMessage arm_message(const ColorConfig& color, double time, const Backbone& backbone);
 
-/// Selects the states at which the arm is drawn: the first, and then ten per second of simulated time.
+/// Selects the states to draw: the first state, then ten per second of simulated time.
 class SceneTimes {
  public:
   /// Returns true if the state at `time` (s) is selected. The times of successive calls must increase.

@@ -144,7 +144,7 @@ TEST(ServoClocks, ACameraWhoseClockWasOddIsBelievedAgain) {
     const ServoResult result = bench.servo(ports, notes);
     EXPECT_TRUE(result.is_done) << result.reason;
     EXPECT_TRUE(notes.has(std::string("camera side: its picture's timestamp is ") + reading));
-    EXPECT_TRUE(notes.has("the arm is seen again"));
+    EXPECT_TRUE(notes.has("the arm is visible again"));
     EXPECT_EQ(result.missed_steps, 0);
     for (const ServoStep& step : result.steps)
       EXPECT_TRUE(!step.seen_at || (std::isfinite(*step.seen_at) && std::isfinite(step.error->rms)));

@@ -107,7 +107,7 @@ TEST(ServoDisturbances, ABrokenTendonIsNamed) {
     const ServoResult& result = servo.run();
     EXPECT_EQ(result.is_done, tendon == 4);
     if (!result.is_done) {
-      const std::string named = fmt::format("as if tendon {} gave way", tendon + 1);
+      const std::string named = fmt::format("as if tendon {} were released", tendon + 1);
       EXPECT_TRUE(result.reason.find(named) != std::string::npos ||
                   (tendon == 6 && result.reason.starts_with("saturated")))
           << result.reason;
@@ -127,7 +127,7 @@ TEST(ServoDisturbances, AnOverloadedStepperIsNoticed) {
   });
   const ServoResult& result = servo.run();
   EXPECT_FALSE(result.is_done);
-  EXPECT_NE(result.reason.find("gave way"), std::string::npos) << result.reason;
+  EXPECT_NE(result.reason.find("were released"), std::string::npos) << result.reason;
   servo.expect_rest();
 }
 

@@ -49,7 +49,8 @@ TEST(ServoEnds, ACameraThatIsWrongFarBeyondDoubtIsNamed) {
     ServoBench bench(servo_file(fmt::format("law = \"{}\"\n", law) + servo_target, rig));
     const ServoResult result = bench.servo();
     EXPECT_FALSE(result.is_done) << law;
-    EXPECT_TRUE(result.reason.starts_with("out of view: camera side's picture would need its camera turned"))
+    EXPECT_TRUE(
+        result.reason.starts_with("out of view: camera side's picture would need a camera that is rotated"))
         << law << ": " << result.reason;
     EXPECT_NE(result.reason.find(" % shorter in focal length"), std::string::npos)
         << law << ": " << result.reason;

@@ -142,8 +142,8 @@ TEST(ServoFaults, StepsThatArePassedAreLeftOut) {
   EXPECT_EQ(result.missed_steps, missed);
   EXPECT_GE(missed, 3 * static_cast<long>(result.steps.size() / 7 - 1));
   EXPECT_LE(missed, 3 * static_cast<long>(result.steps.size() / 7 + 1));
-  EXPECT_TRUE(notes.has("a step took longer than 0.03333 s"));
-  EXPECT_TRUE(notes.has(fmt::format("{} steps of 0.03333 s were missed", missed)));
+  EXPECT_TRUE(notes.has("a control step took longer than 0.03333 s"));
+  EXPECT_TRUE(notes.has(fmt::format("{} control steps of 0.03333 s were missed", missed)));
 }
 
 // Two pictures of the target shape, in their order and swapped.
@@ -336,7 +336,7 @@ TEST(ServoFaults, PicturesOfNoTimeAreNoPictures) {
   const ServoResult result = bench.servo(ports, notes);
   ASSERT_TRUE(result.is_done) << result.reason;
   EXPECT_TRUE(notes.has("camera side: its picture's timestamp is not finite"));
-  EXPECT_TRUE(notes.has("the arm is seen again"));
+  EXPECT_TRUE(notes.has("the arm is visible again"));
   EXPECT_LT(bench.truth(servo_goal_state).rms, 0.006);
   for (const ServoStep& step : result.steps) {
     if (!step.seen_at) continue;

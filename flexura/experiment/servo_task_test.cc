@@ -150,7 +150,7 @@ TEST(Servo, WaitsWhileACameraIsCovered) {
   const ServoResult result = bench.servo(bench.ports(), notes);
   ASSERT_TRUE(result.is_done) << result.reason;
   EXPECT_TRUE(notes.has("camera side does not see the arm")) << notes.lines.size();
-  EXPECT_TRUE(notes.has("the arm is seen again"));
+  EXPECT_TRUE(notes.has("the arm is visible again"));
   // It stopped during the motion: equal consecutive commands.
   int still = 0;
   for (std::size_t i = 1; i < notes.sent.size(); ++i)

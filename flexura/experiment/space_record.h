@@ -13,24 +13,25 @@
 
 namespace flexura {
 
-/// Returns where the axes of the true camera are if the axes of its model report `reported`. Reports count
-/// from the model's start `first`, where the true camera may stand otherwise.
+/// Returns the axis positions of the true camera for the reported positions `reported`. `first`: positions of
+/// the model at the start. The true camera's start may differ from it; both change equally.
 [[nodiscard]] CameraStance true_stance(const Camera& camera, const CameraStance& first,
                                        const CameraStance& reported);
 
-/// Records the true arm and the cameras of a run for the report's 3D view. Long runs are thinned.
+/// Records the true arm and the cameras of a run for the report's 3D view. Keeps only some states of long
+/// runs.
 class SpaceRecord {
  public:
-  /// Takes the cameras at the start.
+  /// Adds the experiment's cameras with their poses at the start.
   void add_cameras(const Experiment& experiment);
-  /// Adds the reports of a camera's axes at `time` s, later than those before.
+  /// Adds the axis positions that a camera reports at `time`, s. Times must increase.
   void report(double time, const std::string& camera, const CameraStance& reported);
-  /// Returns what a camera's axes report at the start; null for an unknown camera.
+  /// Returns the axis positions that a camera reports at the start; null for an unknown camera.
   [[nodiscard]] const CameraStance* first_report(const std::string& camera) const;
-  /// Adds the true arm at `time` s, later than those before, and the arm as commanded then.
+  /// Adds the true arm and the commanded arm at `time`, s. Times must increase.
   void true_arm(double time, const Backbone& truth, const Backbone& commanded);
 
-  /// Returns the record. It has no true arms if they never differ visibly from the commanded ones.
+  /// Returns the record. It omits the true arm if it never differs visibly from the commanded arm.
   [[nodiscard]] ReportSpace space() &&;
 
  private:
@@ -52,12 +53,12 @@ class SpaceRecord {
 /// A task that was performed.
 struct DoneTask {
   const TaskRunner& runner;
-  double start = 0;            ///< In s.
+  double start = 0;            ///< Start of the task, s.
   const Motion& motion;        ///< Commanded motion; its times count from `start`.
-  bool keeps_targets = false;  ///< Whether the targets of the task before stay: a hold.
+  bool keeps_targets = false;  ///< Whether the targets of the previous task remain valid: true for a hold.
 };
 
-/// Returns the targets of tasks in their order, with times of the run.
+/// Returns the targets of the tasks in their order. Times count from the run's start.
 [[nodiscard]] std::vector<ReportSpace::Target> targets_of(std::span<const DoneTask> tasks);
 
 }  // namespace flexura

@@ -64,7 +64,7 @@ TEST_F(Study, BadFilesSayWhatIsWrong) {
       {"no such camera", study_with("camera = \"front\"", "camera = \"back\""),
        "x.toml:11:1: task[0].camera: there is no camera \"back\": expected one of \"front\", \"side\""},
       {"nothing varied", study_with("vary.orbit_deg = [-60, 60]", "vary = {}"),
-       "x.toml:12:1: task[0].vary: names no parameter: expected one, such as orbit_deg = [-60, 60]"},
+       "x.toml:12:1: task[0].vary: has no parameter: expected one parameter, such as orbit_deg = [-60, 60]"},
       {"no vary", study_with("vary.orbit_deg = [-60, 60]", ""), "task[0].vary: missing: expected a table"},
       {"two varied", study_with("points = 5", "vary.zoom = [1, 2]"),
        "x.toml:13:6: task[0].vary.zoom: is given together with vary.orbit: expected one parameter"},
@@ -72,7 +72,7 @@ TEST_F(Study, BadFilesSayWhatIsWrong) {
        "vary.orbits_deg: unknown key; did you mean \"orbit"},
       {"wrong unit", study_with("orbit_deg", "orbit_mm"), "vary.orbit_mm: wrong unit: expected orbit (rad)"},
       {"one value", study_with("[-60, 60]", "[60]"), "expected an array of 2"},
-      {"the same value", study_with("[-60, 60]", "[60, 60]"), "has the same value twice"},
+      {"the same value", study_with("[-60, 60]", "[60, 60]"), "has two equal values"},
       {"NaN", study_with("-60", "nan"), "task[0].vary.orbit_deg[0] = nan: expected a number from"},
       {"infinity", study_with("-60", "inf"), "task[0].vary.orbit_deg[0] = inf: expected a number from"},
       {"many turns", study_with("-60", "-60000"),
@@ -94,7 +94,7 @@ TEST_F(Study, BadFilesSayWhatIsWrong) {
       {"no normal", study_with("target.radius = 0.4", "target.normal = [0, 0, 0]"),
        "task[0].target.normal: has no direction: expected a length above 0"},
       {"in the camera", study_with("target.radius = 0.4", "target.center = [0, 0, 2.5]"),
-       "task[0].target.center: is the camera's own position: the camera cannot orbit it"},
+       "task[0].target.center: is the camera's position: the camera cannot orbit this point"},
   };
   for (const BadFile& file : files) EXPECT_THAT(error_of_file(file.text), HasSubstr(file.error)) << file.what;
 }

@@ -9,8 +9,8 @@
 
 namespace flexura {
 
-/// Variables of inverse kinematics as one vector x. For each section, x has bend_x, bend_y if the arm is
-/// spatial (rad), and the stretch if its limits differ. Other stretches are constant.
+/// Variables of inverse kinematics as one vector x. For each section, x has bend_x (rad), for spatial arms
+/// bend_y (rad), and the stretch if its limits differ. Other stretches are constant.
 class ArmVariables {
  public:
   /// Variables of one section.
@@ -18,8 +18,8 @@ class ArmVariables {
     double length;    ///< Length at stretch 1, m.
     double max_bend;  ///< Largest |bend|, rad; may be infinite.
     std::array<double, 2> stretch_limits;
-    Eigen::Index at;      ///< Index of bend_x in x. bend_y and the stretch follow if they are variable.
-    bool is_spatial;      ///< Whether bend_y is variable.
+    Eigen::Index at;  ///< Index of bend_x in x. If bend_y and the stretch are variable, they follow bend_x.
+    bool is_spatial;  ///< Whether bend_y is variable.
     bool is_stretchable;  ///< Whether the stretch is variable.
     /// Returns the index of the stretch in x.
     [[nodiscard]] Eigen::Index stretch_at() const { return at + (is_spatial ? 2 : 1); }
@@ -45,8 +45,8 @@ class ArmVariables {
   /// Returns the arm's length at its largest stretches, m.
   [[nodiscard]] double max_length() const;
 
-  /// Returns the x nearest to `state` within the limits. Throws std::invalid_argument if the state is not
-  /// finite, or has not one bend and one stretch per section.
+  /// Returns the x nearest to `state` within the limits. Throws std::invalid_argument unless the state is
+  /// finite and has one bend and one stretch per section.
   [[nodiscard]] Eigen::VectorXd pack(const ArmState& state) const;
   /// Returns the state that x describes, without applying limits.
   [[nodiscard]] ArmState state(const Eigen::VectorXd& x) const;

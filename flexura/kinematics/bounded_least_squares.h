@@ -15,13 +15,13 @@
 // variables would have a zero derivative, converge very slowly, and not identify the active limit.
 namespace flexura {
 
-/// A least-squares problem: residuals r as functions of variables x. With 3, 5 or 6 residuals, solving
+/// A least-squares problem: residuals r as functions of variables x. For 3, 5 or 6 residuals, the solver
 /// allocates no memory.
 class BoundedProblem {
  public:
   virtual ~BoundedProblem() = default;
   [[nodiscard]] virtual Eigen::Index row_count() const = 0;
-  /// Computes the residuals r at x and their Jacobian J. r and J have the right size already.
+  /// Computes the residuals r at x and their Jacobian J. The caller has set the sizes of r and J.
   virtual void linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) = 0;
   /// Returns whether the residuals r are small enough for a solution.
   [[nodiscard]] virtual bool is_met(const Eigen::VectorXd& r) const = 0;
@@ -30,7 +30,7 @@ class BoundedProblem {
 /// Reason for the end of a descent.
 enum class Descent {
   met,         ///< The residuals are small enough (BoundedProblem::is_met).
-  stationary,  ///< A minimum within the bounds: no allowed direction decreases |r|.
+  stationary,  ///< The point is a minimum within the bounds: no allowed direction decreases |r|.
   exhausted,   ///< The limit on iterations was reached.
 };
 
@@ -38,22 +38,22 @@ enum class Descent {
 struct DescentLimits {
   int iterations = 60;  ///< Largest number of iterations.
   double slope = 1e-4;  ///< A point is stationary if |free gradient| <= slope |r|.
-  /// If > 0: a point counts as stationary after so many steps in a row that each reduce |r|^2 by less than
-  /// 1 %. Then the residuals jump nearby, or the valley is too narrow.
+  /// If > 0: a point counts as stationary after this number of successive steps that each reduce |r|^2 by
+  /// less than 1 %. Such steps occur if the residuals jump nearby, or if the valley is too narrow.
   int most_slow = 0;
 };
 
-/// Minimizes the residuals of one problem by descents, and reuses memory between descents.
+/// Minimises the residuals of one problem by descents. Reuses memory between descents.
 struct BoundedDescent {
   BoundedDescent(BoundedProblem& of, const Bounds& within, Eigen::Index variables);
 
   /// Descends from x by damped Gauss-Newton steps. x must be within `bounds` and remains within them.
-  /// Afterwards r and J are those at the resulting x.
+  /// Afterwards, r and J are the residuals and the Jacobian at the resulting x.
   Descent descend(const DescentLimits& limits, Eigen::VectorXd& x);
   /// Descends by spectral projected gradients: projected Barzilai-Borwein steps with a nonmonotone line
-  /// search (Birgin, Martinez, Raydan 2000). For minima with a large residual, such as the nearest pose to an
-  /// unreachable target. There the Gauss-Newton approximation of the curvature has an error proportional to
-  /// the residual.
+  /// search (Birgin, Martinez, Raydan 2000). It is meant for minima with a large residual, such as the
+  /// nearest pose to an unreachable target. For these, the Gauss-Newton approximation of the curvature has an
+  /// error proportional to the residual.
   Descent descend_gradient(const DescentLimits& limits, Eigen::VectorXd& x);
 
   /// Sets `trial` to x plus the step that minimizes |J step + r|^2 + damping |step|^2 within the bounds.

@@ -19,11 +19,11 @@ struct Bound {
 /// Limits on variables; each variable has at most one limit.
 using Bounds = std::vector<Bound>;
 
-/// Moves x to the nearest point within `bounds`. The result is never outside, not even by rounding.
+/// Moves x to the nearest point within `bounds`. The result is within the bounds even with rounding errors.
 void project(const Bounds& bounds, Eigen::VectorXd& x);
 
-/// Returns the norm of the part of -gradient that points out of active bounds at x. `gradient` is that of the
-/// function to minimize.
+/// Returns the norm of the part of -gradient that points out of active bounds at x. `gradient`: gradient of
+/// the function to minimise.
 [[nodiscard]] double pressure(const Bounds& bounds, const Eigen::VectorXd& x,
                               const Eigen::VectorXd& gradient);
 

@@ -29,7 +29,7 @@ class CordPointToPointMotion : public Motion {
         cord_changes_.size() != from_.bends.size() || !one_duration) {
       throw std::invalid_argument(
           "a motion of chord angles needs, per section, one change and one profile; all profiles must have "
-          "the same duration");
+          "equal durations");
     }
   }
   [[nodiscard]] double duration() const override { return profiles_.front().duration(); }

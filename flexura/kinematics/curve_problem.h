@@ -9,29 +9,29 @@
 
 namespace flexura {
 
-/// Residuals of "the backbone follows a polyline", as a function of the vector x of ArmVariables. They
-/// compare points at evenly spaced fractions of the backbone's length with points at the same fractions of
-/// the polyline's length. Each difference (x, y, z in base axes) is divided by `length` and by the square
-/// root of the number of points. Hence |r|^2 is the mean square distance in units of `length`.
+/// Residuals of the condition that the backbone follows a polyline, as functions of the vector x of
+/// ArmVariables. They compare points at evenly spaced fractions of the backbone's length with points at equal
+/// fractions of the polyline's length. Each difference (x, y, z in base axes) is divided by `length` and by
+/// the square root of the number of points. Hence |r|^2 is the mean square distance in units of `length`.
 class CurveProblem final : public BoundedProblem {
  public:
-  /// `points` are the polyline's vertices in the base's frame, m: two or more, not all equal. `length` is the
-  /// scale of distances, m.
+  /// `points`: vertices of the polyline in the base's frame, m. There must be at least two, not all equal.
+  /// `length` is the scale of distances, m.
   CurveProblem(const ArmVariables& variables, const std::vector<Eigen::Vector3d>& points, double length);
 
   [[nodiscard]] Eigen::Index row_count() const override {
     return 3 * static_cast<Eigen::Index>(desired_.size());
   }
   void linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) override;
-  /// Returns whether r is zero up to rounding. A curve is always fitted as well as possible.
+  /// Returns whether r is zero up to rounding, so that descents always fit the curve as well as possible.
   [[nodiscard]] bool is_met(const Eigen::VectorXd& r) const override { return r.squaredNorm() < 1e-26; }
   /// Returns the largest distance between points at equal fractions of the lengths of backbone and polyline,
-  /// m, for the variables x. The points include all vertices of the polyline and many points in between, more
-  /// than the residuals.
+  /// m, for the variables x. The points are all vertices of the polyline and many points in between, more
+  /// than in the residuals.
   [[nodiscard]] double largest_distance(const Eigen::VectorXd& x);
 
-  /// Returns the variables with which the end of each section is parallel to the polyline's tangent at the
-  /// same fraction of the length.
+  /// Returns the variables for which the end of each section is parallel to the polyline's tangent at an
+  /// equal fraction of the length.
   [[nodiscard]] Eigen::VectorXd start_along_tangents() const;
   /// Returns the polyline's last point in the base's frame, m.
   [[nodiscard]] const Eigen::Vector3d& end() const { return desired_.back(); }

@@ -74,7 +74,7 @@ std::vector<CubicBezier> catmull_rom(std::span<const Eigen::Vector3d> points, do
 
 std::vector<CubicBezier> catmull_rom(const Backbone& backbone, int spans, double tension) {
   if (spans < 1)
-    throw std::invalid_argument("a section cannot be drawn in " + std::to_string(spans) + " spans");
+    throw std::invalid_argument("a section cannot be divided into " + std::to_string(spans) + " spans");
   std::vector<Eigen::Vector3d> points;
   for (const Arc& arc : backbone.arcs()) {
     for (int i = 0; i < spans; ++i) points.push_back(arc.pose(arc.length * i / spans).position);

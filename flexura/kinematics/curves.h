@@ -24,10 +24,10 @@ struct CubicBezier {
 };
 
 /// Returns the paper's Catmull-Rom spline through `points` (eq. 11), one cubic between each two consecutive
-/// points. The tangent at a point is tension * (next point - previous point). Beyond each end, the additional
-/// point is the reflection of the end's neighbour in the end. Tension 1/2 is the standard spline. It is the
-/// only one that has constant speed through equally spaced points of a straight line. Throws
-/// std::invalid_argument for fewer than two points.
+/// points. The tangent at a point is tension * (next point - previous point). At each end of the curve, the
+/// missing neighbour is the reflection of the other neighbour in the end point. Tension 1/2 gives the
+/// standard spline. Only with this tension, the speed is constant through equally spaced points of a straight
+/// line. Throws std::invalid_argument for fewer than two points.
 [[nodiscard]] std::vector<CubicBezier> catmull_rom(std::span<const Eigen::Vector3d> points,
                                                    double tension = 0.5);
 
@@ -36,16 +36,16 @@ struct CubicBezier {
 /// std::invalid_argument for spans < 1.
 [[nodiscard]] std::vector<CubicBezier> catmull_rom(const Backbone& backbone, int spans, double tension = 0.5);
 
-/// Returns one cubic per section. Ends, end tangents and middle of the cubic are on the section's arc. A
+/// Returns one cubic per section. The cubic has the ends, end tangents and middle of the section's arc. A
 /// section of more than half a turn is split into the smallest number of equal pieces of at most half a turn.
-/// Otherwise the control points of a cubic would diverge towards a full turn.
+/// The reason is that the control points of a cubic diverge as its arc approaches a full turn.
 [[nodiscard]] std::vector<CubicBezier> tangent_bezier(const Backbone& backbone);
 
 /// Curve that is drawn for an arm: the exact arcs, the paper's spline through the sections' base points
 /// (catmull_rom), or one cubic per section (tangent_bezier).
 enum class CurveKind : std::uint8_t { arcs, catmull_rom, bezier };
 
-/// Returns the cubics of a drawn curve, in W, m, from the base on; empty for `arcs`, which are drawn
+/// Returns the cubics of a drawn curve, in W, m, from base to tip. It is empty for `arcs`, which are drawn
 /// directly. `tension` is the parameter of catmull_rom().
 [[nodiscard]] std::vector<CubicBezier> drawn_curve(const Backbone& backbone, CurveKind kind, double tension);
 

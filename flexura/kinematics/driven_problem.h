@@ -8,13 +8,13 @@
 
 namespace flexura {
 
-/// Variables of inverse kinematics for an arm whose sections may be several arcs. The variables are those of
+/// Variables of inverse kinematics for an arm whose sections may be several arcs. The variables describe
 /// commands; targets are for shapes.
 class DrivenVariables {
  public:
   explicit DrivenVariables(const ArmModel& model);
 
-  /// Variables of commands (driven()) and of shapes (shaped()).
+  /// Returns the variables of commands; shaped() returns those of shapes.
   [[nodiscard]] const ArmVariables& driven() const { return driven_; }
   [[nodiscard]] const ArmVariables& shaped() const { return shaped_; }
   /// Computes the variables of the shape for the variables of a command. Resizes `shape` if needed. The

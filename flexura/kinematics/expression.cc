@@ -38,10 +38,10 @@ void check_text(const std::string& text) {
                           static_cast<std::size_t>(odd - text.begin()));
   }
   if (const std::size_t at = text.find('"'); at != std::string::npos) {
-    throw ExpressionError("contains a text: expected numbers, names and operators", at);
+    throw ExpressionError("contains a text in quotes: expected numbers, names and operators", at);
   }
   if (const std::size_t at = find_assignment(text); at != std::string::npos) {
-    throw ExpressionError("assigns a value: expected == to compare", at);
+    throw ExpressionError("assigns a value: expected == for a comparison", at);
   }
 }
 
@@ -100,7 +100,7 @@ Expression::Expression(const std::string& text) : parser_(std::make_unique<Parse
     parser_->parser.SetExpr(text);
     parser_->parser.Eval();
     if (parser_->parser.GetNumResults() != 1)
-      throw ExpressionError("has several values: expected one", text.find(','));
+      throw ExpressionError("has several values: expected one value", text.find(','));
   } catch (const mu::ParserError& error) {
     throw ExpressionError(message_of(error), position_of(error, text));
   }

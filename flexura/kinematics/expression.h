@@ -19,9 +19,10 @@ class ExpressionError : public std::runtime_error {
   std::size_t position_;
 };
 
-/// A user's formula of time, such as "0.3*sin(2*pi*t/T)". Supports pi and the operators and functions of
-/// muParser: sin, cos, exp, min, max, abs, if-then-else with ? :, ... Variables are t (time since the start
-/// of the task, s), T (duration of the task, s) and i (number of the section, from 1). Not thread-safe.
+/// A user's formula as a function of time, such as "0.3*sin(2*pi*t/T)". Supports pi and the operators and
+/// functions of muParser: sin, cos, exp, min, max, abs, if-then-else with ? :, ... Variables are t (time
+/// since the start of the task, s), T (duration of the task, s) and i (number of the section, from 1). Not
+/// thread-safe.
 class Expression {
  public:
   /// Throws ExpressionError for an invalid formula, an unknown name, an assignment, or more than 1000
@@ -31,8 +32,8 @@ class Expression {
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
 
-  /// Returns the value at time t, s, of a task of duration T, s, for a section with a number from 1. Not
-  /// finite if the formula is undefined there (1/0, sqrt(-1)).
+  /// Returns the value at time t, s, in a task of duration T, s. Sections are numbered from 1. The result is
+  /// not finite where the formula is undefined (1/0, sqrt(-1)).
   [[nodiscard]] double value(double t, double T, std::size_t section_number) const;
 
  private:

@@ -44,7 +44,7 @@ TEST(Expression, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(wrong("t = 3").what, HasSubstr("assigns a value"));
   EXPECT_EQ(wrong("t = 3").position, 2U);
   EXPECT_EQ(wrong("t == 3 ? 1 : (t >= 2) + (t != 1)").what, "no error");
-  EXPECT_EQ(wrong("sin(\"t\")").what, "contains a text: expected numbers, names and operators");
+  EXPECT_EQ(wrong("sin(\"t\")").what, "contains a text in quotes: expected numbers, names and operators");
   EXPECT_EQ(wrong("t + \"1\"").position, 4U);
   EXPECT_EQ(wrong("2*_pi").what, "unexpected token \"_pi\"") << "muParser's own, which has 12 digits";
   EXPECT_EQ(wrong("_e").what, "unexpected token \"_e\"");

@@ -4,7 +4,7 @@
 
 namespace flexura {
 
-/// Throw std::invalid_argument for an invalid target or configuration of inverse kinematics (inverse.h).
+/// Throws std::invalid_argument for an invalid target or configuration of inverse kinematics (inverse.h).
 void check_question(const TipTarget& target, const InverseConfig& config);
 void check_question(const CurveTarget& target, const InverseConfig& config);
 

@@ -7,8 +7,8 @@
 
 namespace flexura {
 
-/// Returns points of the backbone by which solutions are distinguished: five points per section, base first,
-/// in the base's frame, m.
+/// Returns points of the backbone with which solutions are compared: five points per section, from base to
+/// tip, in the base's frame, m.
 [[nodiscard]] std::vector<Eigen::Vector3d> backbone_points(const ArmVariables& variables,
                                                            const Eigen::VectorXd& x);
 
@@ -21,7 +21,7 @@ void turn_to_x(const ArmVariables& variables, Eigen::VectorXd& x);
 
 /// Returns whether solution `a` is listed before solution `b`. The solution with the smaller value of the
 /// objective is first. If the values are equal up to rounding, as for mirror images, the first variable that
-/// differs decides: the larger value is first.
+/// differs decides: the solution with the larger value is first.
 [[nodiscard]] bool comes_first(double objective_a, const Eigen::VectorXd& a, double objective_b,
                                const Eigen::VectorXd& b);
 

@@ -25,16 +25,16 @@ struct ObjectiveScale {
   [[nodiscard]] Bounds relative(Bounds bounds) const;
 };
 
-/// Moves the solution x along the set of solutions to a local minimum of the objective. Each step linearizes
-/// the problem, computes the minimum in closed form, and moves x there or part of the way. A descent then
-/// brings x back to a solution. A step is accepted if the descent finds a solution and the objective
-/// decreased. x is always a solution.
+/// Moves the solution x along the set of solutions to a local minimum of the objective. Each step linearises
+/// the problem, computes the minimum in closed form, and moves x to the minimum or a part of the way. A
+/// descent then moves x back to a solution. A step is accepted if the descent finds a solution and the
+/// objective has decreased. The resulting x is always a solution.
 void follow_objective(BoundedDescent& descent, const ObjectiveScale& scale, Eigen::VectorXd& x);
 
 /// Refines the result of follow_objective() by Newton steps on the surface of solutions. The resulting x is a
-/// solution, and its objective is not larger than before. (Alone, follow_objective() converges only linearly,
-/// because it uses the tangents of the surface but not its curvature. Its results scatter by about 1e-5
-/// around the minimum.)
+/// solution, and its objective is not larger than before. This is needed because follow_objective() uses the
+/// tangents of the surface but not its curvature. It therefore converges only linearly, and its results
+/// scatter by about 1e-5 around the minimum.
 void run_down_to_minimum(BoundedDescent& descent, const ObjectiveScale& scale, Eigen::VectorXd& x);
 
 }  // namespace flexura

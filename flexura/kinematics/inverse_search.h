@@ -9,7 +9,7 @@
 
 namespace flexura {
 
-/// Largest number of iterations for bringing a state to its minimum.
+/// Largest number of iterations for moving a state to its local minimum.
 inline constexpr int settling_iterations = 6000;
 
 /// Best result of a search up to now.
@@ -28,20 +28,20 @@ struct Found {
   }
 };
 
-/// Descends from one start after another until a solution is found. Stops at `max_starts` starts, including
-/// those already counted in `found`.
+/// Descends from one start after another until a solution is found. Stops after `max_starts` starts,
+/// including those already counted in `found`.
 void search(BoundedDescent& descent, InverseStarts& starts, int max_starts, Found& found);
 
-/// Brings a result that is not a solution to its local minimum, with at most `iterations` iterations.
-/// Gradient and Gauss-Newton steps alternate: gradient steps are slow in long valleys; Gauss-Newton steps are
-/// slow in valleys with a large residual at the minimum.
+/// Moves a result that is not a solution to its local minimum, with at most `iterations` iterations. Gradient
+/// and Gauss-Newton steps alternate. Gradient steps are slow in long valleys, and Gauss-Newton steps are slow
+/// in valleys with a large residual at the minimum.
 void settle(BoundedDescent& descent, int iterations, Found& found);
 
 /// Returns the nearest state for a target known to be out of reach: the best minimum found from a few starts.
 Found nearest(BoundedDescent& descent, InverseStarts& starts, int max_starts);
 
-/// Returns why a result misses its target: the descent did not finish, active limits prevent a solution, or
-/// the target is out of reach.
+/// Returns why a result does not reach its target: the descent did not finish, active limits prevent a
+/// solution, or the target is out of reach.
 InverseOutcome outcome_of_missed(BoundedDescent& descent, const Found& found);
 
 }  // namespace flexura

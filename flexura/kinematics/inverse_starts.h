@@ -9,11 +9,11 @@
 namespace flexura {
 
 /// Start states for the descents of inverse kinematics. The first is the given state, the second is one arc
-/// to the target, and further ones are random states within the limits (SplitMix64). Equal inputs give equal
+/// to the target, and all others are random states within the limits (SplitMix64). Equal inputs give equal
 /// start states.
 class InverseStarts {
  public:
-  /// `p_BT` is the target of the tip in the base's frame, m. `first` has the variables of the given state.
+  /// `p_BT`: target of the tip in the base's frame, m. `first`: variables of the given state.
   InverseStarts(const ArmVariables& variables, const Eigen::Vector3d& p_BT,
                 std::optional<Eigen::VectorXd> first, std::uint64_t seed);
 

@@ -34,7 +34,7 @@ class PointToPointMotion : public Motion {
     });
     if (profiles_.size() != from_.bends.size() || profiles_.empty() || !one_duration) {
       throw std::invalid_argument(
-          "a point to point motion needs one profile per section, all of the same duration");
+          "a point to point motion needs one profile per section, all with equal durations");
     }
   }
   [[nodiscard]] double duration() const override { return profiles_.front().duration(); }

@@ -25,9 +25,9 @@ class Motion {
   Motion(const Motion&) = delete;
   Motion& operator=(const Motion&) = delete;
 
-  [[nodiscard]] virtual double duration() const = 0;  ///< Duration, s; >= 0.
-  /// Returns the state at `time`, s, in [0, duration()]. Values that are not finite, as of a user's formula,
-  /// are not replaced.
+  [[nodiscard]] virtual double duration() const = 0;  ///< Returns the duration, s; >= 0.
+  /// Returns the state at `time`, s, in [0, duration()]. Values may be not finite, for example those of a
+  /// user's formula.
   [[nodiscard]] virtual ArmState at(double time) const = 0;
   /// Returns bounds on the rates of `section` that hold during all of [start, end], s; std::nullopt if
   /// unknown.
@@ -41,21 +41,21 @@ using MotionPtr = std::shared_ptr<const Motion>;
 /// Returns a motion that stays in `state` for `duration` s.
 [[nodiscard]] MotionPtr hold_motion(ArmState state, double duration);
 
-/// Returns a motion between two states. Bend and stretch of each section change along a straight line, with
-/// the section's time profile. Throws std::invalid_argument unless there is one profile per section, and all
-/// profiles have the same duration.
+/// Returns a motion between two states. The bend and stretch of each section change along a straight line,
+/// with the section's time profile. Throws std::invalid_argument unless there is one profile per section, and
+/// all profiles have equal durations.
 [[nodiscard]] MotionPtr point_to_point_motion(ArmState from, ArmState to, std::vector<Profile> profiles);
 
 /// Returns a sinusoidal motion, which starts at the state `from`. The bend of section i is from_i +
-/// amplitude_i (sin(2 pi t / period + phase_i) - sin(phase_i)). Amplitudes and phases are in rad; the period,
-/// above 0, and the duration are in s. Throws std::invalid_argument unless there are one amplitude and one
-/// phase per section.
+/// amplitude_i (sin(2 pi t / period + phase_i) - sin(phase_i)). Amplitudes and phases are in rad. The period,
+/// which must be above 0, and the duration are in s. Throws std::invalid_argument unless there are one
+/// amplitude and one phase per section.
 [[nodiscard]] MotionPtr sine_motion(ArmState from, std::vector<Eigen::Vector2d> amplitudes,
                                     std::vector<double> phases, double period, double duration);
 
-/// Interpolation between keyframes. Linear: straight lines. Smooth: cubic Hermite pieces. At an inner
-/// keyframe the slope is that of the parabola through three neighbouring keyframes; at both ends the slope is
-/// zero.
+/// Interpolation between keyframes. `linear`: straight lines. `smooth`: cubic Hermite pieces. At an inner
+/// keyframe, the slope is that of the parabola through the keyframe and its two neighbours. At both ends, the
+/// slope is zero.
 enum class Interpolation { linear, smooth };
 
 /// Returns a motion through `states` at `times`, s. Throws std::invalid_argument unless there are at least

@@ -16,7 +16,8 @@ constexpr double rounding = 1e-6;
 constexpr double max_position = 9007199254740992.0;
 
 void require_one_an_axis(std::size_t axes, std::size_t given) {
-  if (given != axes) throw std::invalid_argument(fmt::format("{} axes cannot take {} values", axes, given));
+  if (given != axes)
+    throw std::invalid_argument(fmt::format("expected {} values, one per axis, not {}", axes, given));
 }
 
 // Positive values pull in; a reversed motor counts the other way.
@@ -58,8 +59,7 @@ MotorCommander::MotorCommander(const Drive& drive, const TendonDisplacements& st
 
 void MotorCommander::command(std::size_t axis, double target) {
   if (!(std::abs(target) < max_position)) {
-    throw std::out_of_range(
-        fmt::format("axis {}: the position {} microsteps cannot be counted", axis, target));
+    throw std::out_of_range(fmt::format("axis {}: the position {} microsteps is too large", axis, target));
   }
   targets_[axis] = sense(axes_[axis]) * target;
   // A target halfway between two microsteps keeps the previous position.

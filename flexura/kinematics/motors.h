@@ -11,7 +11,7 @@
 // with the backlash compensated for pulling in.
 namespace flexura {
 
-/// Returns each motor's position for tendon displacements, microsteps, not rounded and without backlash.
+/// Returns each motor's position for tendon displacements, in microsteps, without rounding and backlash.
 /// Throws std::invalid_argument unless there is one displacement per axis.
 [[nodiscard]] std::vector<double> motor_positions(const Drive& drive,
                                                   const TendonDisplacements& displacements);
@@ -20,9 +20,9 @@ namespace flexura {
 /// std::invalid_argument unless there is one position per axis.
 [[nodiscard]] TendonDisplacements displacements_at(const Drive& drive, std::span<const double> positions);
 
-/// Computes the motor positions to command so that tendons follow target displacements. Rounds to the nearest
-/// microstep, and compensates the whole backlash as soon as a tendon reverses. Each tendon then stays within
-/// half a microstep of its target.
+/// Computes the motor positions to command so that tendons follow target displacements. It rounds to the
+/// nearest microstep, and compensates the whole backlash as soon as a tendon reverses. Thus each tendon
+/// remains within half a microstep of its target.
 class MotorCommander {
  public:
   /// Starts at the displacements `start`, with the backlash compensated for pulling in. Throws
@@ -33,8 +33,8 @@ class MotorCommander {
   [[nodiscard]] const std::vector<std::int64_t>& positions() const { return positions_; }
   /// Returns the positions before rounding, microsteps.
   [[nodiscard]] const std::vector<double>& targets() const { return targets_; }
-  /// Computes the positions for the displacements `desired`. Throws std::out_of_range if the magnitude of a
-  /// position is above 2^53 or not a number.
+  /// Computes the positions for the displacements `desired`. Throws std::out_of_range if a position is NaN,
+  /// or if its magnitude is above 2^53.
   void follow(const TendonDisplacements& desired);
 
  private:

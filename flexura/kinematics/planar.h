@@ -17,8 +17,8 @@ namespace flexura {
                                                             double base_tangent);
 
 /// Returns archings by the inverse of eq. 5. Angles are not wrapped, because a chord angle larger by 2 pi
-/// describes another shape. Only for exact angles: an error in one chord angle changes all later archings by
-/// twice the error, with alternating signs.
+/// describes another shape. The angles must be exact: an error in one chord angle changes all later archings
+/// by twice the error, with alternating signs.
 [[nodiscard]] std::vector<double> archings_from_cord_angles(std::span<const double> cord_angles,
                                                             double base_tangent);
 

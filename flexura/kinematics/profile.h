@@ -3,23 +3,24 @@
 namespace flexura {
 
 /// Time profile of a motion between two points: the completed fraction of the distance, from 0 at time 0 to 1
-/// at `duration`. Every profile is symmetric in time. Its rate does not decrease before the middle and does
-/// not increase after it.
+/// at `duration`. Every profile is symmetric in time. Its rate never decreases before the middle of the
+/// duration, and never increases after it.
 class Profile {
  public:
-  /// Returns a profile of constant rate. This and the other functions throw std::invalid_argument unless the
-  /// duration, s, is above 0.
+  /// Returns a profile with a constant rate. This function and the following ones throw std::invalid_argument
+  /// unless the duration, s, is above 0.
   [[nodiscard]] static Profile linear(double duration);
   /// Returns the minimum-jerk profile 10 x^3 - 15 x^4 + 6 x^5, with x = t / duration. It has zero rate and
   /// acceleration at both ends, and the least integral of squared jerk.
   [[nodiscard]] static Profile minimum_jerk(double duration);
   /// Returns the fastest profile over `distance` > 0 with |rate| <= max_rate and |acceleration| <=
-  /// max_acceleration. Both limits are above 0, in units of distance per s and per s^2. The profile has
-  /// constant acceleration, constant rate if max_rate is reached, and constant deceleration.
+  /// max_acceleration. Both limits are above 0, in units of distance per s and per s^2. The profile has a
+  /// phase of constant acceleration, a phase of constant rate if max_rate is reached, and a phase of constant
+  /// deceleration.
   [[nodiscard]] static Profile trapezoid(double distance, double max_rate, double max_acceleration);
 
   [[nodiscard]] double duration() const { return duration_; }  ///< Duration, s.
-  /// Returns the completed fraction at `time`, s: exactly 0 up to time 0, exactly 1 from `duration` on.
+  /// Returns the completed fraction at `time`, s: exactly 0 until time 0, and exactly 1 after `duration`.
   [[nodiscard]] double fraction(double time) const;
   /// Returns d fraction / dt at `time`, 1/s; 0 outside [0, duration].
   [[nodiscard]] double rate(double time) const;

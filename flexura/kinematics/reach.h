@@ -20,8 +20,8 @@ namespace flexura {
 /// Returns a lower bound on the rotation angle between the tip's frame and `R_BT`, rad.
 [[nodiscard]] double least_angle(const Arm& arm, const Eigen::Matrix3d& R_BT);
 
-/// Returns a lower bound, m, on the distance from the origin of `X_BT` of a tip that points along the z axis
-/// of `X_BT`. The bound applies least_distance() from either end of the arm.
+/// Returns a lower bound, m, on the distance of the tip from the origin of `X_BT`, for a tip that points
+/// along the z axis of `X_BT`. It applies least_distance() from both ends of the arm.
 [[nodiscard]] double least_distance_along(const Arm& arm, const Pose& X_BT);
 
 }  // namespace flexura

@@ -22,7 +22,7 @@ ArmState arm_state(const Arm& arm, const ShapeConfig& shape) {
   const std::size_t count = arm.sections.size();
   ArmState state = ArmState::straight(count);
   const auto require_count = [count](std::size_t given) {
-    if (given != count) throw std::invalid_argument("arm_state: one value per section is needed");
+    if (given != count) throw std::invalid_argument("arm_state: expected one value per section");
   };
   if (shape.bends) {
     require_count(shape.bends->size());

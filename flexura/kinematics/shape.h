@@ -13,13 +13,13 @@ namespace flexura {
 /// Arm::near_tangent.
 [[nodiscard]] double base_tangent_angle(const Arm& arm);
 
-/// Returns the state of `arm` that `shape` describes; omitted bends are 0, omitted stretches are 1. Throws
-/// std::invalid_argument for a shape with errors that check_shape() would report.
+/// Returns the state of `arm` that `shape` describes. Omitted bends are 0, and omitted stretches are 1.
+/// Throws std::invalid_argument for a shape with errors that check_shape() would report.
 [[nodiscard]] ArmState arm_state(const Arm& arm, const ShapeConfig& shape);
 
-/// Reports to `reader` sections that a shape without errors of check_shape() bends by more than largest_bend.
-/// `path` is the shape's place in the document. The range of a field cannot check this for chord angles and
-/// for bends in two directions.
+/// Reports to `reader` sections that bend by more than largest_bend. The shape must have no errors of
+/// check_shape(). `path`: path of the shape in the document. Ranges of fields cannot check this for chord
+/// angles and for bends in two directions.
 void check_bends(const Arm& arm, const ShapeConfig& shape, const std::string& path, Reader& reader);
 
 /// Returns the arching of each section of a planar arm, counter-clockwise, rad.

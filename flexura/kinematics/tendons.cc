@@ -22,7 +22,7 @@ void require_fit(const Arm& arm, const Drive& drive, std::size_t bends, std::siz
   for (const Tendon& tendon : drive.tendons) {
     if (tendon.section >= count) {
       throw std::invalid_argument(
-          fmt::format("a tendon ends at section {} of an arm of {}", tendon.section, count));
+          fmt::format("a tendon ends at section {}, but the arm has {} sections", tendon.section, count));
     }
   }
 }

@@ -22,25 +22,25 @@ namespace flexura {
                                                        const ArmState& state);
 
 /// Returns the Jacobian of the displacements with respect to (bend_x, bend_y, stretch) of every section: one
-/// row per tendon, three columns per section. In a continuous channel the Jacobian is the same in every
-/// state, because displacements are linear in bends and stretches.
+/// row per tendon, three columns per section. In a continuous channel, the Jacobian is equal in all states,
+/// because displacements are linear in bends and stretches.
 [[nodiscard]] Eigen::MatrixXd tendon_jacobian(const Arm& arm, const Drive& drive, const ArmState& state);
 
 /// State of the arm that fits tendon displacements best.
 struct TendonFit {
   ArmState state;  ///< Fitted state of the arm.
   /// Displacement of each tendon minus its displacement in `state`, m. A tendon with a positive residual
-  /// pulls against the others; a tendon with a negative residual is slack. Zero if the displacements are
-  /// consistent.
+  /// pulls against the others. A tendon with a negative residual is slack. The residuals are zero if the
+  /// displacements are consistent.
   TendonDisplacements residual;
-  bool converged = true;  ///< Whether a fit was found. False is possible only with guide disks; `state` is
-                          ///< then the last iterate.
+  /// Whether a fit was found. It can be false only with guide disks; then `state` is the last iterate.
+  bool converged = true;
 };
 
 /// Returns the state for tendon displacements: bends, and stretches of stretchable sections. The fit is exact
-/// if such a state exists, otherwise by least squares, section by section from the base. In a continuous
-/// channel this equals the least-squares fit over all tendons. bend_y of planar arms is 0. If the tendons do
-/// not determine a section, the result is the solution nearest to straight.
+/// if an exactly fitting state exists. Otherwise it is a least-squares fit, section by section from the base.
+/// In a continuous channel, this equals the least-squares fit to all tendons. bend_y of planar arms is 0. If
+/// the tendons do not determine a section, the result is the solution nearest to straight.
 [[nodiscard]] TendonFit fit_state(const Arm& arm, const Drive& drive,
                                   const TendonDisplacements& displacements);
 

@@ -8,18 +8,18 @@
 
 namespace flexura {
 
-/// Part of the tip's pose that the target determines; the value is the number of residuals.
+/// Part of the tip's pose that the target determines. The value is the number of residuals.
 enum class TipRows { position = 3, direction = 5, rotation = 6 };
 
-/// Residuals of "the tip is at the target", as a function of the vector x of ArmVariables. Rows 0 to 2 are
-/// the tip's position minus the target's, in base axes, divided by `length`. The other rows are the rotation
-/// vector from the target's orientation to the tip's, in the tip's axes, rad. A target direction gives two
-/// rows (about x and y), a target rotation three.
+/// Residuals of the condition that the tip is at the target, as functions of the vector x of ArmVariables.
+/// Rows 0 to 2 are the tip's position minus the target's, in base axes, divided by `length`. The other rows
+/// are the rotation vector from the target's orientation to the tip's, in the tip's axes, rad. A target
+/// direction has two such rows (about x and y), and a target rotation has three.
 ///
 /// The orientation rows of J in linearise() are the angular velocity, not the derivative of the rotation
 /// vector e. The matrix that converts between them has e as an eigenvector with eigenvalue 1. Hence the
-/// gradient of |e|^2 and the undamped Gauss-Newton step are the same for both, but the angular velocity has
-/// no singular orientation.
+/// gradient of |e|^2 and the undamped Gauss-Newton step are equal for both. The angular velocity has the
+/// advantage that it has no singular orientation.
 class TipProblem final : public BoundedProblem {
  public:
   /// `X_BT` is the target pose of the tip in the base's frame. TipRows::position uses only its position;

@@ -73,7 +73,7 @@ void check_sizes(const ArmStateMessage& state, std::size_t sections, const Poses
                     (!state.cord_angles || state.cord_angles->size() == sections) &&
                     poses.poses.size() == sections + 1;
   if (!fits)
-    throw std::runtime_error(fmt::format("the log's state at {} s does not fit its arm", state.time));
+    throw std::runtime_error(fmt::format("the log's state at {} s does not fit the log's arm", state.time));
 }
 
 // /arm/state and /arm/poses, which follows it.
@@ -120,7 +120,7 @@ class TruthTable : public LogTable {
       csv_.end_row();
     }
     if (poses.poses.size() != *arcs_ + 1)
-      throw std::runtime_error(fmt::format("the log's true arm at {} s has other arcs than before", time));
+      throw std::runtime_error(fmt::format("the number of arcs of the log's true arm changes at {} s", time));
     csv_.cell(time);
     add_places(csv_, poses);
     csv_.end_row();
@@ -146,7 +146,8 @@ class TensionsTable : public LogTable {
       csv_.end_row();
     }
     if (pulls.tensions.size() != *tendons_)
-      throw std::runtime_error(fmt::format("the log's true arm at {} s has other tendons than before", time));
+      throw std::runtime_error(
+          fmt::format("the number of tendons of the log's true arm changes at {} s", time));
     csv_.cell(time);
     for (const double tension : pulls.tensions) csv_.cell(tension);
     csv_.end_row();

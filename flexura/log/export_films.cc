@@ -50,8 +50,7 @@ std::map<std::string, SensorConfig> sensors_of(const McapReader& log,
   if (!sensors.empty()) return sensors;
   throw input_error(
       results.string(),
-      "holds no images: expected a run with [record] cameras = true; where it was, no frame arrived "
-      "before its end");
+      "has no images: expected a run with [record] cameras = true, in which at least one frame arrived");
 }
 
 // The frames of a film, from time 0 on. Equal successive frames are written at once.

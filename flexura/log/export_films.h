@@ -24,7 +24,7 @@ class FilmWriter {
   FilmWriter(FilmWriter&&) = delete;
   FilmWriter& operator=(FilmWriter&&) = delete;
 
-  /// Appends `times` equal frames, > 0. `png` is the picture as a PNG file.
+  /// Appends the picture `times` > 0 times. `png` is the picture as a PNG file.
   virtual void put(const std::string& png, std::int64_t times) = 0;
   /// Completes the film. Called once, after the last frame.
   virtual void finish() = 0;
@@ -35,9 +35,10 @@ using NewFilm =
     std::function<std::unique_ptr<FilmWriter>(const std::filesystem::path& stem, const SensorConfig& sensor)>;
 
 /// Makes a film of each camera's images in a run's log. The films are written to the new folder
-/// RESULTS/FOLDER (FOLDER-2, ... if it exists). A film has the camera's frame rate, and every frame from time
-/// 0 to the run's end. A lost frame is replaced by the previous frame, or by the first frame. `cameras` are
-/// the run's true cameras. `progress` may be null. Throws InputError if `results` has no log or no images.
+/// RESULTS/FOLDER (FOLDER-2, ... if it exists). A film has the camera's frame rate and lasts from time 0 to
+/// the run's end. A lost frame is replaced by the previous frame or, at the beginning, by the first frame.
+/// `cameras` are the run's true cameras. `progress` may be null. Throws InputError if `results` has no log or
+/// no images.
 ExportResult export_films(const std::filesystem::path& results, const std::string& folder,
                           const std::vector<CameraConfig>& cameras, const NewFilm& new_film,
                           Progress* progress = nullptr);

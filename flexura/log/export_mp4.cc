@@ -37,7 +37,7 @@ class Mp4Writer : public FilmWriter {
   void finish() override {
     if (const int status = program_.finish(); status != 0)
       throw std::runtime_error(
-          fmt::format("{} made no film: it ended with the status {}", film_program, status));
+          fmt::format("{} failed to make a film: its exit status is {}", film_program, status));
   }
 
  private:
@@ -50,7 +50,7 @@ ExportResult export_mp4(const std::filesystem::path& results, const std::vector<
                         Progress* progress) {
   if (!has_program(film_program))
     throw std::runtime_error(fmt::format(
-        "the program {0}, which makes films, is not in the PATH: install the package {0}", film_program));
+        "the program {0}, which makes films, is not on the PATH: install the package {0}", film_program));
   return export_films(
       results, "mp4", cameras,
       [](const std::filesystem::path& stem, const SensorConfig& sensor) {

@@ -19,7 +19,7 @@ class LogTable {
 
   [[nodiscard]] virtual std::string file_name()
       const = 0;  ///< Returns the name of the table's file, such as "servo.csv".
-  /// Returns true if the table is made from messages of this topic.
+  /// Returns true if the table needs messages of this topic.
   [[nodiscard]] virtual bool takes(std::string_view topic) const = 0;
   /// Adds a message of such a topic, in the order of the log. `time`: time of the message in the log, s.
   /// Throws InputError or std::runtime_error if the message is invalid.

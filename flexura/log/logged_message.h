@@ -9,8 +9,8 @@
 
 namespace flexura {
 
-/// A message for a log, of any type with a table of fields. It refers to the message and the topic, so it is
-/// valid only during one call.
+/// A message for a log. It can have any type with a table of fields. This object refers to the message and
+/// the topic, so it is valid only during one call.
 class LoggedMessage {
  public:
   /// `time`: time of the message in the log, s since the experiment's start.
@@ -28,7 +28,7 @@ class LoggedMessage {
   [[nodiscard]] const TableInfo& schema() const { return schema_; }
   /// Returns the message as the node that is written to the log.
   [[nodiscard]] Node node() const { return write_(message_); }
-  /// Returns the message if it is an M, otherwise null.
+  /// Returns the message if its type is M, otherwise null.
   template <class M>
   [[nodiscard]] const M* as() const {
     return type_ == typeid(M) ? static_cast<const M*>(message_) : nullptr;

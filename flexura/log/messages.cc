@@ -76,9 +76,9 @@ const Table<EventMessage>& fields_of(const EventMessage*) {
 const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*) {
   static const auto table =
       Table<DriveCommandsMessage>("flexura.DriveCommands", "Command of the motors at one clock step.")
-          .field(
-              "time", &DriveCommandsMessage::time,
-              {.meaning = "Time at which the positions are to be reached, since the experiment's start, s."})
+          .field("time", &DriveCommandsMessage::time,
+                 {.meaning =
+                      "Time at which the motors must reach the positions, since the experiment's start, s."})
           .field("positions", &DriveCommandsMessage::positions,
                  {.meaning = "Position of each axis, microsteps from the straight arm."})
           .field("rates", &DriveCommandsMessage::rates,
@@ -91,12 +91,12 @@ const Table<ArmReadingMessage>& fields_of(const ArmReadingMessage*) {
       Table<ArmReadingMessage>("flexura.ArmReading", "Reading of the simulated drives.")
           .field("time", &ArmReadingMessage::time, {.meaning = "Time since the experiment's start, s."})
           .field("bends", &ArmReadingMessage::bends,
-                 {.meaning = "Bend of each section that the model gives for the motors' positions, rad."})
+                 {.meaning = "Bend of each section, computed by the model from the motors' positions, rad."})
           .field("stretches", &ArmReadingMessage::stretches,
-                 {.meaning = "Stretch of each section that the model gives for the motors' positions, as a "
-                             "factor on its length."})
+                 {.meaning = "Stretch of each section, computed by the model from the motors' positions, as "
+                             "a factor on its length."})
           .field("positions", &ArmReadingMessage::positions,
-                 {.meaning = "Position of each axis, microsteps; arms with drives."})
+                 {.meaning = "Position of each axis, microsteps; only for arms with drives."})
           .field("moving", &ArmReadingMessage::moving, {.meaning = "Whether the device is moving."});
   return table;
 }
@@ -107,10 +107,9 @@ const Table<TensionsMessage>& fields_of(const TensionsMessage*) {
           .field("time", &TensionsMessage::time, {.meaning = "Time since the experiment's start, s."})
           .field("tensions", &TensionsMessage::tensions,
                  {.meaning = "Tension of each tendon at the arm's base, N."})
-          .field(
-              "lost_steps", &TensionsMessage::lost_steps,
-              {.meaning = "Microsteps that each motor has lost so far, unknown to its controller; arms with "
-                          "drives."});
+          .field("lost_steps", &TensionsMessage::lost_steps,
+                 {.meaning = "Microsteps that each motor has lost so far; its controller does not know them. "
+                             "Only for arms with drives."});
   return table;
 }
 
@@ -122,7 +121,8 @@ const Table<EnergyMessage>& fields_of(const EnergyMessage*) {
           .field("strain", &EnergyMessage::strain, {.meaning = "Elastic energy, J."})
           .field(
               "gravity", &EnergyMessage::gravity,
-              {.meaning = "Potential energy of its weight and loads, J; 0 at the height of the arm's base."});
+              {.meaning =
+                   "Potential energy of the arm's weight and loads, J; 0 at the height of the arm's base."});
   return table;
 }
 
@@ -147,7 +147,7 @@ const Table<ContactsMessage>& fields_of(const ContactsMessage*) {
       Table<ContactsMessage>("flexura.Contacts", "Contacts of the true arm with inertia.")
           .field("time", &ContactsMessage::time, {.meaning = "Time since the experiment's start, s."})
           .field("contacts", &ContactsMessage::contacts,
-                 {.meaning = "Contacts; empty after the last contact has ended."});
+                 {.meaning = "Contacts; empty in the first message after the last contact."});
   return table;
 }
 
@@ -157,7 +157,7 @@ const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*) {
           .field("time", &HeadReadingMessage::time, {.meaning = "Time since the experiment's start, s."})
           .field("pan", &HeadReadingMessage::pan, {.meaning = "Pan, rad, to the camera's left."})
           .field("tilt", &HeadReadingMessage::tilt, {.meaning = "Tilt, rad, upwards."})
-          .field("zoom", &HeadReadingMessage::zoom, {.meaning = "Zoom, as a ratio or a motor count."})
+          .field("zoom", &HeadReadingMessage::zoom, {.meaning = "Zoom, as a ratio or as a motor position."})
           .field("moving", &HeadReadingMessage::moving, {.meaning = "Whether the device is moving."});
   return table;
 }

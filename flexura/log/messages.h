@@ -62,27 +62,29 @@ struct EventMessage {
   std::int64_t level = 2;  ///< 2 info, 3 warning, 4 error.
   std::string message;
   std::string name;  ///< Source of the event: the name of a task, or "run".
-  std::string file;  ///< Empty, and `line` is 0; both exist for compatibility with other programs.
+  std::string file;  ///< Empty; `line` is 0. Both exist for compatibility with other programs.
   std::int64_t line = 0;
 };
 
-/// Returns "info", "warning" or "error" for a level of foxglove.Log. The level debug of other programs gives
-/// "info", the level fatal "error".
+/// Returns "info", "warning" or "error" for a level of foxglove.Log. For levels of other programs, debug
+/// counts as "info", and fatal counts as "error".
 [[nodiscard]] std::string level_name(std::int64_t level);
 
 /// flexura.DriveCommands, on /drive/commands: command of the motors at one clock step.
 struct DriveCommandsMessage {
-  double time = 0;                      ///< Time at which the positions are to be reached, s.
+  double time = 0;                      ///< Time at which the motors must reach the positions, s.
   std::vector<std::int64_t> positions;  ///< Microsteps, one per axis.
   std::vector<double> rates;            ///< Mean rates since the previous command, microsteps/s.
 };
 
 /// flexura.ArmReading, on /arm/reading if a run simulates the rig: reading of the simulated drives.
 struct ArmReadingMessage {
-  double time = 0;                           ///< In s.
-  std::vector<std::array<double, 2>> bends;  ///< Bends that the model gives for the motors' positions, rad.
-  std::vector<double> stretches;             ///< Stretches that the model gives for the motors' positions.
-  std::optional<std::vector<std::int64_t>> positions;  ///< Microsteps, one per axis; arms with drives.
+  double time = 0;  ///< In s.
+  /// Bends, computed by the model from the motors' positions, rad.
+  std::vector<std::array<double, 2>> bends;
+  std::vector<double> stretches;  ///< Stretches, computed by the model from the motors' positions.
+  /// Motor positions, microsteps, one per axis; only for arms with drives.
+  std::optional<std::vector<std::int64_t>> positions;
   bool moving = false;
 };
 
@@ -90,7 +92,8 @@ struct ArmReadingMessage {
 struct TensionsMessage {
   double time = 0;               ///< In s.
   std::vector<double> tensions;  ///< Tension of each tendon at the arm's base, N.
-  /// Microsteps that each motor has lost so far, unknown to its controller; arms with drives.
+  /// Microsteps that each motor has lost so far; its controller does not know them. Only for arms with
+  /// drives.
   std::optional<std::vector<double>> lost_steps;
 };
 
@@ -113,8 +116,8 @@ struct ContactMessage {
   std::optional<double> normal_force = {};  ///< Normal force, N.
   std::optional<bool> sticks = {};          ///< Whether the surfaces do not slide along each other.
 };
-/// flexura.Contacts, on /arm/contacts, logged with the true arm if that is an elastic rod with inertia.
-/// Logged while the arm touches something, and once afterwards.
+/// flexura.Contacts, on /arm/contacts, logged with the true arm if that is an elastic rod with inertia. It is
+/// logged while the arm touches something, and once afterwards.
 struct ContactsMessage {
   double time = 0;  ///< In s.
   std::vector<ContactMessage> contacts;
@@ -124,7 +127,7 @@ struct ContactsMessage {
 struct HeadReadingMessage {
   double time = 0;           ///< In s.
   double pan = 0, tilt = 0;  ///< In rad.
-  double zoom = 1;           ///< Position in the lens's table.
+  double zoom = 1;           ///< Zoom: position in the lens's zoom table.
   bool moving = false;
 };
 

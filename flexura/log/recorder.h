@@ -41,19 +41,19 @@ class Recorder {
   /// Writes the backbone of the true arm.
   void truth(double time, const Backbone& backbone);
 
-  /// Write the readings of a rig's devices.
+  /// Writes the reading of a device of the rig.
   void reading(const ArmReading& reading);
   void reading(const std::string& camera, const HeadReading& reading);
   void reading(const std::string& camera, const StageReading& reading);
 
-  /// Writes a frame. `message` is its logged_image(). Making it takes most of the time, and other threads can
-  /// do that.
+  /// Writes a frame. `message` is the frame's logged_image(). Computing it takes most of the time, and other
+  /// threads can do this.
   void image(const std::string& camera, const Frame& frame, std::string_view message);
-  /// Writes a picture that is not a camera's frame, on a topic of its own.
+  /// Writes a picture that is not a camera's frame on the topic `topic`.
   void picture(const std::string& topic, double time, const Picture& picture);
 
-  /// Completes the log. A log that is not completed, as after a crash, is readable up to its last complete
-  /// chunk.
+  /// Completes the log. A log that was not completed, for example because of a crash, is readable up to its
+  /// last complete chunk.
   void close();
 
  private:

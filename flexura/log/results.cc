@@ -15,7 +15,7 @@ std::filesystem::path make_new_folder(const std::filesystem::path& desired) {
   if (!base.has_filename()) base = base.parent_path();  // "results/" means "results".
   if (base.filename() == "." || base.filename() == ".." || base.filename().empty())
     throw input_error(desired.string(),
-                      "does not end in the name of a folder: expected a path that ends in a name");
+                      "does not end with the name of a folder: expected a path that ends with a name");
   const auto fail = [](const std::filesystem::path& folder, const std::error_code& error) {
     throw std::runtime_error(fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
   };

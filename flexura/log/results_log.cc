@@ -10,7 +10,7 @@ namespace flexura {
 std::filesystem::path file_of_results(const std::filesystem::path& results, const char* name) {
   if (is_missing(results / name)) {
     throw input_error(results.string(),
-                      fmt::format("holds no {}: expected a folder made by `flexura run`", name));
+                      fmt::format("has no {}: expected a folder made by `flexura run`", name));
   }
   try {
     return file_inside(results, name);

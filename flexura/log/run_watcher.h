@@ -21,7 +21,7 @@ struct TrueArm {
   std::vector<double>
       pulled;  ///< Length by which the drives have pulled in each tendon, m; empty: not known.
   std::vector<double> tensions;    ///< Tension of each tendon, N; empty for an arm without forces.
-  std::vector<double> lost_steps;  ///< Microsteps lost by each motor; empty if motors cannot lose any.
+  std::vector<double> lost_steps;  ///< Microsteps lost by each motor; empty if motors cannot lose steps.
   std::optional<EnergyMessage> energy = {};   ///< Energies of an arm with inertia.
   std::vector<ContactMessage> contacts = {};  ///< Contacts of the arm.
 };
@@ -40,10 +40,10 @@ class RunWatcher {
   RunWatcher(const RunWatcher&) = delete;
   RunWatcher& operator=(const RunWatcher&) = delete;
 
-  /// Receives the arm's state at every clock step (`time` in s), and the readings of all cameras at that
-  /// time, in their order. The readings are empty if the run simulates no rig; its cameras are then at rest.
+  /// Receives the arm's state at every clock step, and the measured axis positions of all cameras. `time`:
+  /// time of the step, s. If the run simulates no rig, the axis positions are empty: the cameras are at rest.
   virtual void state(double time, const ArmState& state, std::span<const CameraReading> cameras) = 0;
-  /// Returns true if truth() is to be called at the next step. The truth is computed only then.
+  /// Returns true if truth() must be called at the next step. The true arm is only computed in this case.
   [[nodiscard]] virtual bool needs_truth() { return false; }
   /// Receives the true arm at a clock step, if it is known, after the call of state().
   virtual void truth(double /*time*/, const TrueArm& /*arm*/) {}
@@ -52,7 +52,7 @@ class RunWatcher {
                         const std::string& /*text*/) {}
   /// Receives a task's message as logged; LoggedMessage::as gives its type.
   virtual void logged(const LoggedMessage& /*message*/) {}
-  /// A task of the rig has ended.
+  /// Called after a task of the rig has ended.
   virtual void task_ended() {}
 };
 

@@ -8,7 +8,7 @@ namespace flexura {
 
 // Conversions of arrays, as in files, to vectors and rotations.
 
-/// Convert an array to a vector.
+/// Converts an array to a vector.
 [[nodiscard]] inline Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 [[nodiscard]] inline Eigen::Vector4d vector(const std::array<double, 4>& a) {
   return {a[0], a[1], a[2], a[3]};

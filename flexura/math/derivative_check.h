@@ -17,7 +17,7 @@ struct NumericalJacobian {
 /// Returns the Jacobian of f at x, computed by central differences and Richardson extrapolation to step 0
 /// (Ridders 1982). Tests use this function to check analytic derivatives. `step` > 0, in the units of x, is
 /// the first of a decreasing sequence of steps. A good value is a tenth of the distance over which f deviates
-/// noticeably from linear.
+/// noticeably from a linear function.
 [[nodiscard]] NumericalJacobian numerical_jacobian(const VectorFunction& f, const Eigen::VectorXd& x,
                                                    double step = 0.1);
 

@@ -17,11 +17,11 @@ namespace flexura {
 /// atan(tan alpha_2 cos alpha_1) (paper, section 2). The azimuth alpha_1, rad, is the angle from Y towards X
 /// in the plane XOY. The angle alpha_2, rad, is from Y towards Z in the plane ZOY.
 [[nodiscard]] double elevation_of_planes(double alpha_1, double alpha_2);
-/// Returns whether the azimuth, rad, is within 10 degrees of +-90 degrees. There the angle in the plane ZOY
-/// gives little information about the elevation.
+/// Returns whether the azimuth, rad, is within 10 degrees of +-90 degrees. At such azimuths, the angle in the
+/// plane ZOY contains little information about the elevation.
 [[nodiscard]] bool is_singular_for_planes(double azimuth);
 
-/// Returns `angle` plus the multiple of 2 pi that brings the result nearest to `other`, rad.
+/// Returns `angle` plus the multiple of 2 pi for which the result is nearest to `other`, rad.
 [[nodiscard]] double nearest_turn(double angle, double other);
 
 }  // namespace flexura

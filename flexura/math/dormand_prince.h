@@ -33,15 +33,14 @@ class DormandPrince {
 
   /// Result of an advance.
   struct Progress {
-    /// Whether the time `until` was reached. Otherwise the number of steps reached its limit, the step size
-    /// became too small, or go_on() stopped the advance. In this case t and y are those of the last accepted
-    /// step.
+    /// Whether the time `until` was reached. If not, the number of steps reached its limit, the step size
+    /// became too small, or go_on() stopped the advance. Then t and y are those of the last accepted step.
     bool is_there = false;
     int steps = 0, taken_back = 0;  ///< Numbers of accepted steps, and of steps rejected for their error.
   };
 
-  /// Advances from (t, y) to exactly the time `until` >= t. f(t, y, slope) writes dy/dt into `slope`. Before
-  /// every step go_on() is called; if it returns false, the advance stops.
+  /// Advances from (t, y) to exactly the time `until` >= t. f(t, y, slope) writes dy/dt into `slope`. It
+  /// calls go_on() before every step. If go_on() returns false, the advance stops.
   template <class Function, class GoOn = bool (*)()>
   Progress advance(Function&& f, double& t, Eigen::VectorXd& y, double until, GoOn go_on = always) {
     Progress progress;

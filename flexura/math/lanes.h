@@ -27,7 +27,7 @@ struct Wide<double> {
   using type = Lanes;
 };
 
-/// Load and store numbers that are consecutive in memory.
+/// Loads and stores numbers that are consecutive in memory.
 template <typename T>
 [[nodiscard]] inline T load_lanes(const T* from) {
   return *from;

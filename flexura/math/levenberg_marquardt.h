@@ -33,14 +33,13 @@ enum class DescentEnd {
   exhausted,  ///< The limit on the number of steps was reached.
 };
 
-/// Minimizes a cost, which is `cost` at the start. Accepts each trial step that decreases the cost; tries at
+/// Minimises a cost. `cost`: cost at the start. Accepts each trial step that decreases the cost. Tries at
 /// most `most_tries` steps.
 ///
 /// - `try_step(damping)` computes a trial step and returns its TriedStep.
-/// - `keep(step, cost)` accepts the step just tried and linearizes the problem there. It sets `cost` to the
-/// cost that
-///   next one has to lower, and returns true if it was the last.
-/// - `leave(step, cost)` returns true if smaller steps need not be tried.
+/// - `keep(step, cost)` accepts the last trial step and linearises the problem at the new point. It sets
+///   `cost` to the cost that the next step must decrease, and returns true if this was the last step.
+/// - `leave(step, cost)` returns true if smaller steps need not be tried after a rejected step.
 template <class Try, class Keep, class Leave>
 DescentEnd levenberg_marquardt(double cost, const Damping& damping, int most_tries, const Try& try_step,
                                const Keep& keep, const Leave& leave) {

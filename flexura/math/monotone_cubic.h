@@ -9,7 +9,7 @@ namespace flexura {
 /// the curve increases if the points increase, and decreases if the points decrease (F. N. Fritsch, J.
 /// Butland, "A method for constructing local monotone piecewise cubic interpolants", 1984). The slope at each
 /// end is computed from three points and limited so that the end piece is monotone. For points on a straight
-/// line the curve is this line.
+/// line, the curve is this line.
 class MonotoneCubic {
  public:
   /// Makes the curve through the points (x[i], y[i]). A single point gives a constant. Throws
@@ -25,8 +25,8 @@ class MonotoneCubic {
   [[nodiscard]] double value(double x) const;
   /// Returns the slope dy/dx at x; 0 outside [front(), back()].
   [[nodiscard]] double slope(double x) const;
-  /// Returns the derivative of value(x) with respect to y[i]. At a local extremum or between equal values the
-  /// rule for the slope at a point is not smooth; this slope then counts as constant.
+  /// Returns the derivative of value(x) with respect to y[i]. At a local extremum or between equal values,
+  /// the rule for the slope at a point is not smooth. There the slope counts as constant.
   [[nodiscard]] double by_point(double x, std::size_t i) const;
 
  private:

@@ -30,14 +30,15 @@ struct ConvexLimits {
 
 /// Settings of nearest_point().
 struct NearestPointConfig {
-  int most_rounds = 400;    ///< Largest number of projections on each set.
-  double tolerance = 1e-7;  ///< Change of x in a round at which the search ends, and largest excess().
+  int most_rounds = 400;  ///< Largest number of projections on each set.
+  /// The search ends if x changes by less than this in a round. It is also the largest allowed excess().
+  double tolerance = 1e-7;
 };
 
 /// Returns the vector within all limits that is nearest to `start`, by alternating projections with Dykstra's
-/// correction (R. L. Dykstra, 1983). If the rounds end before it converges, the result is within the limits,
-/// but may not be the nearest. Empty if no such vector was found. Throws std::invalid_argument for limits of
-/// another size.
+/// correction (R. L. Dykstra, 1983). If the number of rounds is too small for convergence, the result is
+/// within the limits but may not be the nearest vector. Returns std::nullopt if no vector within the limits
+/// was found. Throws std::invalid_argument for limits whose sizes do not fit `start`.
 [[nodiscard]] std::optional<Eigen::VectorXd> nearest_point(const ConvexLimits& limits,
                                                            const Eigen::VectorXd& start,
                                                            const NearestPointConfig& config = {});

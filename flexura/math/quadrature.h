@@ -7,7 +7,7 @@ namespace flexura {
 
 /// Nodes and weights of a quadrature rule on [-1, 1].
 struct Quadrature {
-  std::vector<double> nodes;    ///< Increasing, within [-1, 1].
+  std::vector<double> nodes;    ///< Increasing nodes in [-1, 1].
   std::vector<double> weights;  ///< One weight per node; the sum of the weights is 2.
 };
 

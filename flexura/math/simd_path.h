@@ -17,8 +17,8 @@ enum class SimdPath {
 /// Returns "baseline", "avx2" or "avx512".
 [[nodiscard]] std::string_view name_of(SimdPath path);
 
-/// Returns the instruction sets that this build contains and this processor supports, narrowest first. The
-/// first is the baseline.
+/// Returns the instruction sets that this build contains and this processor supports, from the narrowest (the
+/// baseline) to the widest.
 [[nodiscard]] std::vector<SimdPath> available_simd_paths();
 
 /// Returns the widest of the available_simd_paths().

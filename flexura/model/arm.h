@@ -12,10 +12,10 @@
 
 namespace flexura {
 
-/// Largest bend of a section accepted in a file, rad. Larger values are certainly mistakes.
+/// Largest bend of a section accepted in a file, rad. Larger values are refused as mistakes.
 inline constexpr double largest_bend = 1000;
 
-/// Planar: the arm bends in one plane only; for the paper's arm, the world's XOY plane. Spatial: the arm
+/// `planar`: the arm bends only in one plane; for the paper's arm, the world's XOY plane. `spatial`: the arm
 /// bends in any direction.
 enum class ArmKind { planar, spatial };
 
@@ -27,9 +27,9 @@ struct Section {
   double max_bend_rate = std::numeric_limits<double>::infinity();  ///< Largest |d bend/dt|, rad/s.
   std::array<double, 2> stretch_limits = {1.0, 1.0};  ///< Smallest and largest factor on `length`.
   double max_stretch_rate = std::numeric_limits<double>::infinity();  ///< Largest |d stretch/dt|, 1/s.
-  /// Distribution of the bend along the section (Actuation). The section consists of one arc for each number,
-  /// all of equal length, with bends in proportion to the numbers. Numbers are at least 0, and at least one
-  /// is above 0. Default: one arc.
+  /// Distribution of the bend along the section (Actuation). The section consists of one arc for each number.
+  /// These arcs have equal lengths, and bends in proportion to the numbers. Numbers are at least 0, and at
+  /// least one is above 0. Default: one arc.
   std::optional<std::vector<double>> bend_profile = {};
   /// Material of the section's elastic rod. Default: no rod; the section bends as commanded.
   std::optional<MaterialConfig> material = {};
@@ -39,8 +39,8 @@ struct Section {
 };
 
 /// Configuration of the arm: bend vector and stretch of each section, base first. A bend vector is theta (cos
-/// phi, sin phi), rad, with components towards x and y of the section's base frame. For a planar arm bend_y =
-/// 0; an arching b, counter-clockwise, is the bend (-2 b, 0).
+/// phi, sin phi), rad: the section bends by theta towards the direction at the angle phi from x to y in its
+/// base frame. For a planar arm, bend_y = 0, and a counter-clockwise arching b is the bend (-2 b, 0).
 struct ArmState {
   std::vector<Eigen::Vector2d> bends;  ///< Bend vector of each section, rad.
   std::vector<double> stretches;       ///< Factor on the length of each section.
@@ -62,10 +62,10 @@ struct ArmState {
 struct Arm {
   ArmKind kind = ArmKind::planar;
   Pose X_WB = default_base_pose();  ///< Pose of the base frame in W, position in m.
-  std::vector<Section> sections;    ///< Base first; at least one.
-  /// Planar arms: selects the angle of the base's tangent from +X among angles that differ by full turns. The
-  /// selected angle is the nearest to this one, rad, so that 270 degrees in a file does not become -90. Chord
-  /// angles are relative to the base's tangent.
+  std::vector<Section> sections;    ///< Sections from base to tip; at least one.
+  /// For planar arms: approximate angle of the base's tangent from +X, rad. Angles that differ by full turns
+  /// describe the same tangent; the one nearest to this value is used. Thus 270 degrees in a file does not
+  /// become -90 degrees. Chord angles are computed from the base's tangent.
   double near_tangent = 0;
 
   /// Returns the sum of the unstretched section lengths, m.

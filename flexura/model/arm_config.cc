@@ -24,22 +24,23 @@ constexpr NumberRange size_range = {.min = 1e-6, .max = 1e6};
 
 void check_count(std::size_t given, std::size_t sections, const std::string& path, Reader& reader) {
   if (given == sections) return;
-  reader.problem_at(path, fmt::format("{} given: expected {}, one for each section", given, sections));
+  reader.problem_at(path, fmt::format("{} given: expected {} values, one per section", given, sections));
 }
 
 void check_arm(const ArmConfig& config, Reader& reader) {
   const bool is_planar = config.kind == ArmKind::planar;
   if (is_planar && config.base.rotation) {
-    reader.problem_at("base.rotation", "is for spatial arms: expected base.tangent_deg for a planar one");
+    reader.problem_at("base.rotation", "is for spatial arms: expected base.tangent_deg for a planar arm");
   }
   if (!is_planar && config.base.tangent) {
-    reader.problem_at("base.tangent", "is for planar arms: expected base.rotation for a spatial one");
+    reader.problem_at("base.tangent", "is for planar arms: expected base.rotation for a spatial arm");
   }
   std::size_t arcs = 0;
   for (const Section& section : config.section)
     arcs += section.bend_profile ? section.bend_profile->size() : 1;
   if (arcs > max_sections)
-    reader.problem_at("section", fmt::format("has {} arcs: expected up to {} in all", arcs, max_sections));
+    reader.problem_at("section",
+                      fmt::format("has {} arcs in total: expected at most {}", arcs, max_sections));
   check_shape(config.initial, config.kind, config.section.size(), "initial", reader);
   check_mechanics(config, reader);
   check_look(config.look, config.arm(), "look", reader);
@@ -62,7 +63,7 @@ const Table<Section>& fields_of(const Section*) {
                   .required = true})
           .field(
               "radius", &Section::radius,
-              {.meaning = "Radius of the tube. Two numbers describe a taper, at the section's base and end.",
+              {.meaning = "Radius of the tube. Two numbers, at the section's base and end, describe a taper.",
                .unit = Unit::metre,
                .range = size_range,
                .one_for_all = true})
@@ -80,14 +81,13 @@ const Table<Section>& fields_of(const Section*) {
                  {.meaning = "Smallest and largest stretch.", .range = above_up_to(0, 100)})
           .field("max_stretch_rate", &Section::max_stretch_rate,
                  {.meaning = "Largest stretch rate, 1/s.", .range = above(0), .default_text = "no limit"})
-          .field(
-              "bend_profile", &Section::bend_profile,
-              {.meaning =
-                   "Relative bends of arcs of equal length that make up the section. For a static arm: "
-                   "number of arcs that approximate the rod, and a factor on the computed bend of each arc.",
-               .range = between(0, 1e6),
-               .count = {1, max_arcs},
-               .default_text = "one arc; three if static"})
+          .field("bend_profile", &Section::bend_profile,
+                 {.meaning = "The section consists of arcs of equal length, one per number. The arcs' bends "
+                             "are in proportion to the numbers. For a static arm, the arcs approximate the "
+                             "rod, and each number is a factor on the computed bend of its arc.",
+                  .range = between(0, 1e6),
+                  .count = {1, max_arcs},
+                  .default_text = "one arc; three if static"})
           .field("material", &Section::material,
                  {.meaning = "Elastic rod in the section.", .default_text = "none"})
           .check([](const Section& section, Reader& reader) {
@@ -116,11 +116,12 @@ const Table<ShapeConfig>& fields_of(const ShapeConfig*) {
                   .unit = Unit::radian,
                   .range = arching_range,
                   .default_text = "not set"})
-          .field("bends", &ShapeConfig::bends,
-                 {.meaning = "Bend vector of each section: bends towards x and y of its own base frame.",
-                  .unit = Unit::radian,
-                  .range = bend_range,
-                  .default_text = "not set"})
+          .field(
+              "bends", &ShapeConfig::bends,
+              {.meaning = "Bend vector of each section: bends towards x and y of the section's base frame.",
+               .unit = Unit::radian,
+               .range = bend_range,
+               .default_text = "not set"})
           .field("stretches", &ShapeConfig::stretches,
                  {.meaning = "Factor on the length of each section.",
                   .range = above_up_to(0, 100),
@@ -167,13 +168,12 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
                  {.meaning =
                       "Model of the arm. `kinematic`: shapes follow commands exactly. `static`: sections are "
                       "elastic rods in equilibrium with tendons, gravity and loads; each needs a material. "
-                      "`dynamic`: these rods move and swing. Tasks use their equilibrium, and servos also "
-                      "their slowest "
-                      "modes. Under "
-                      "[truth.arm] only the simulated arm is such a rod; tasks use the model of [arm]."})
+                      "`dynamic`: the rods have inertia and oscillate. Tasks use their equilibrium, and "
+                      "servos also their slowest modes. A model in [truth.arm] applies only to the simulated "
+                      "arm; tasks use the model of [arm]."})
           .field("gravity", &ArmConfig::gravity,
-                 {.meaning = "Gravity in the world's frame, X, Y, Z: [0, -9.81, 0] where +Y is up. Affects "
-                             "elastic rods only.",
+                 {.meaning = "Gravity in the world's frame, X, Y, Z: [0, -9.81, 0] if +Y is up. Affects only "
+                             "elastic rods.",
                   .unit = Unit::metre_per_second_squared,
                   .range = between(-1e6, 1e6)})
           .field("tendon", &ArmConfig::tendon,
@@ -190,15 +190,15 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
                   .range = between(1e-6, 0.1)})
           .field("spectral_radius", &ArmConfig::spectral_radius,
                  {.meaning = "Numerical damping of a dynamic arm: spectral radius of the integration at high "
-                             "frequencies. 0 damps fast vibrations in one step; 1 keeps the energy of an arm "
-                             "without damping.",
+                             "frequencies. 0 damps fast vibrations in one step; 1 conserves the energy of an "
+                             "undamped arm.",
                   .range = between(0, 1)})
           .field("contact", &ArmConfig::contact,
                  {.meaning = "Contact of a dynamic arm with obstacles and with itself.",
                   .default_text = "no contact"})
           .field("drag", &ArmConfig::drag, {.meaning = "Fluid around a dynamic arm.", .default_text = "none"})
           .field("payload", &ArmConfig::payload,
-                 {.meaning = "Masses that a dynamic arm carries for a time, as tables [[arm.payload]].",
+                 {.meaning = "Masses that a dynamic arm carries temporarily, as tables [[arm.payload]].",
                   .count = {0, max_loads},
                   .default_text = "none"})
           .check(check_arm);
@@ -218,7 +218,7 @@ void check_shape(const ShapeConfig& shape, ArmKind kind, std::size_t sections, c
     if (!*values) continue;
     const std::string place = prefix + name;
     if (kind == ArmKind::spatial)
-      reader.problem_at(place, "is for planar arms: expected bends for a spatial one");
+      reader.problem_at(place, "is for planar arms: expected bends for a spatial arm");
     check_count((*values)->size(), sections, place, reader);
   }
   if (shape.bends) {

@@ -16,10 +16,10 @@
 
 namespace flexura {
 
-/// Range of angles in files and requests, rad. It allows many turns; sums of such angles have negligible
+/// Range of angles in files and requests, rad. It allows many turns. Sums of such angles have negligible
 /// rounding errors.
 inline constexpr NumberRange angle_range = {.min = -1e4, .max = 1e4};
-/// Ranges of each component of a section's bend vector, and of a section's arching, rad.
+/// Range of each component of a section's bend vector, and range of a section's arching, rad.
 inline constexpr NumberRange bend_range = {.min = -largest_bend, .max = largest_bend};
 inline constexpr NumberRange arching_range = {.min = -largest_bend / 2, .max = largest_bend / 2};
 
@@ -47,21 +47,22 @@ struct ArmConfig {
   ArmKind kind = ArmKind::planar;
   BaseConfig base;
   ShapeConfig initial;           ///< Shape at the start.
-  std::vector<Section> section;  ///< Base first.
+  std::vector<Section> section;  ///< Sections from base to tip.
   LookConfig look;
   ArmMechanics mechanics = ArmMechanics::kinematic;
-  std::array<double, 3> gravity = {0, 0, 0};  ///< In the world's frame, m/s^2.
+  std::array<double, 3> gravity = {0, 0, 0};  ///< Gravity in the world's frame, m/s^2.
   std::vector<TendonRouteConfig>
       tendon;  ///< Routes of tendons. Empty: the tendons of the drive, if there is a drive.
   std::vector<LoadConfig> load;
-  /// Integration step of a dynamic arm, s. The fields from here on are for dynamic arms.
+  /// Integration step of a dynamic arm, s. This field and the following ones are for dynamic arms.
   double time_step = 0.005;
   double spectral_radius = 0.1;  ///< Spectral radius of the time integration at high frequencies, 0 to 1.
-  std::optional<ContactConfig> contact;  ///< Missing: no contact forces.
-  std::optional<DragConfig> drag;        ///< Missing: no surrounding fluid.
+  /// Contact with obstacles and with itself; missing: no contact forces.
+  std::optional<ContactConfig> contact;
+  std::optional<DragConfig> drag;  ///< Fluid around the arm; missing: no fluid.
   std::vector<PayloadConfig> payload;
 
-  /// Returns the arm with its sections as the drives bend them.
+  /// Returns the arm in terms of the sections that the drives bend.
   [[nodiscard]] Arm arm() const;
   /// Returns the arm together with the arcs of its sections.
   [[nodiscard]] ArmModel model() const { return ArmModel(arm()); }
@@ -73,9 +74,10 @@ const Table<ShapeConfig>& fields_of(const ShapeConfig*);
 const Table<BaseConfig>& fields_of(const BaseConfig*);
 const Table<ArmConfig>& fields_of(const ArmConfig*);
 
-/// Reports errors of a shape to `reader`, for an arm of this kind and number of sections. `path` is the
-/// shape's place in the document, such as "initial"; "" is the current place. Errors are two forms of bends
-/// at once, wrong counts, planar keys for a spatial arm, and bends out of a planar arm's plane.
+/// Reports errors of a shape to `reader`, for an arm of this kind and number of sections. `path`: path of the
+/// shape in the document, such as "initial"; "" for the current table. Errors are: bends in more than one
+/// form, wrong numbers of values, keys for planar arms in a spatial arm, and bends out of a planar arm's
+/// plane.
 void check_shape(const ShapeConfig& shape, ArmKind kind, std::size_t sections, const std::string& path,
                  Reader& reader);
 

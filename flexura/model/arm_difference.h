@@ -31,7 +31,7 @@ struct ArmDifference {
   return sum;
 }
 
-/// Returns `state` plus `share` times a difference, both of the same arm.
+/// Returns `state` plus `share` times the difference `way`.
 [[nodiscard]] inline ArmState plus(ArmState state, const ArmDifference& way, double share = 1) {
   for (std::size_t i = 0; i < state.bends.size(); ++i) {
     state.bends[i] += share * way.bends[i];
@@ -41,8 +41,8 @@ struct ArmDifference {
 }
 
 /// Interpolates bends and stretches linearly between two states: the paper's "linear interpolation algorithm"
-/// (section 4). Without rounding errors the result is `from` at fraction 0 and `to` at fraction 1, unlike
-/// plus(from, minus(to, from), fraction). `between` must be a different object than `from` and `to`.
+/// (section 4). At the fractions 0 and 1, the result is exactly `from` or `to`; plus(from, minus(to, from),
+/// fraction) would have rounding errors. `between` must be a different object than `from` and `to`.
 inline void interpolate(const ArmState& from, const ArmState& to, double fraction, ArmState& between) {
   between = fraction >= 1 ? to : from;
   if (fraction <= 0 || fraction >= 1) return;

@@ -17,9 +17,10 @@ constexpr double rounding = 1e-9;
 constexpr std::size_t max_coefficients = 20;
 
 Spec route(const char* direction) {
-  return {.meaning = fmt::format("Offset towards {}, m, added to that of `radius` and `angle`: coefficients "
-                                 "of a polynomial in the unstretched arc length from the base, m.",
-                                 direction),
+  return {.meaning =
+              fmt::format("Offset towards {}, m, in addition to that by `radius` and `angle`. The numbers "
+                          "are coefficients of a polynomial in the unstretched arc length from the base, m.",
+                          direction),
           .range = between(-1e9, 1e9),
           .count = {0, max_coefficients},
           .default_text = "0"};
@@ -40,8 +41,7 @@ double end_of(const ArmConfig& arm, std::int64_t section) {
 bool ends_on_arm(std::int64_t section, const ArmConfig& arm, const std::string& path, Reader& reader) {
   const auto sections = static_cast<std::int64_t>(arm.section.size());
   if (section <= sections) return true;
-  reader.problem_at(
-      path, fmt::format("is section {} of an arm of {}: expected 1 to {}", section, sections, sections));
+  reader.problem_at(path, fmt::format("{}: expected a section of the arm, 1 to {}", section, sections));
   return false;
 }
 
@@ -56,10 +56,9 @@ void check_in_tube(const TendonRouteConfig& tendon, const ArmConfig& arm, const 
       const double radius = section.radius[0] + (section.radius[1] - section.radius[0]) * t;
       const double distance = tendon.offset(s, end).norm();
       if (distance <= radius * (1 + rounding)) continue;
-      reader.problem_at(path,
-                        fmt::format("runs outside the tube: expected at most {:.6g} m off the backbone in "
-                                    "section {}, {:.6g} m from the base, not {:.6g} m",
-                                    radius, i + 1, s, distance));
+      reader.problem_at(path, fmt::format("leaves the tube: expected at most {:.6g} m from the backbone in "
+                                          "section {}, {:.6g} m from the base, not {:.6g} m",
+                                          radius, i + 1, s, distance));
       return;
     }
     base += section.length;
@@ -81,7 +80,7 @@ void check_motion(const ArmConfig& arm, Reader& reader) {
   for (const Section& section : arm.section) length += section.length;
   if (length / *arm.contact->spacing > most_places)
     reader.problem_at("contact.spacing",
-                      fmt::format("{:.6g} m: expected at least {:.6g} m, which gives {} points",
+                      fmt::format("{:.6g} m: expected at least {:.6g} m, which results in {} points",
                                   *arm.contact->spacing, length / most_places, most_places));
 }
 
@@ -116,26 +115,27 @@ const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*) {
                   .unit = Unit::radian,
                   .range = angle_range})
           .field("end_radius", &TendonRouteConfig::end_radius,
-                 {.meaning = "Distance from the backbone at the tendon's end; linear in between.",
+                 {.meaning = "Distance from the backbone at the tendon's end. Between base and end, the "
+                             "distance changes linearly.",
                   .unit = Unit::metre,
                   .range = between(0, 1e3),
                   .default_text = "radius"})
           .field("turns", &TendonRouteConfig::turns,
-                 {.meaning = "Uniform turns around the backbone from the arm's base to the tendon's end, "
-                             "from x towards y.",
+                 {.meaning = "Number of turns around the backbone from the arm's base to the tendon's end, "
+                             "from x towards y. The turns are uniform.",
                   .range = between(-1e3, 1e3)})
           .field("x", &TendonRouteConfig::x, route("x"))
           .field("y", &TendonRouteConfig::y, route("y"))
-          .field(
-              "compliance", &TendonRouteConfig::compliance,
-              {.meaning = "Elongation per newton of tension, m/N, where tendon displacements are commanded.",
-               .range = between(0, 1e6)})
+          .field("compliance", &TendonRouteConfig::compliance,
+                 {.meaning = "Elongation per newton of tension, m/N. It has an effect if tendon "
+                             "displacements are commanded.",
+                  .range = between(0, 1e6)})
           .field("friction", &TendonRouteConfig::friction,
                  {.meaning = "Coulomb friction coefficient mu along the tendon. The fraction exp(-mu theta) "
                              "of the tension remains after a total turning angle theta from the base, rad.",
                   .range = between(0, 10)})
           .field("breaks_at", &TendonRouteConfig::breaks_at,
-                 {.meaning = "Time at which the tendon breaks. Its tension is 0 from then on.",
+                 {.meaning = "Time at which the tendon breaks. Afterwards its tension is 0.",
                   .unit = Unit::second,
                   .range = between(0, 1e9),
                   .default_text = "never"});
@@ -154,8 +154,8 @@ const Table<LoadConfig>& fields_of(const LoadConfig*) {
           .field("moment", &LoadConfig::moment,
                  {.meaning = "Moment in the world's frame, N m: X, Y, Z.", .range = between(-1e9, 1e9)})
           .field("following", &LoadConfig::following,
-                 {.meaning = "Whether force and moment are given in the frame of the section's end, z along "
-                             "the backbone, and rotate with it."});
+                 {.meaning = "Whether force and moment are given in the frame of the section's end (z along "
+                             "the backbone), and rotate with it."});
   return table;
 }
 
@@ -172,7 +172,8 @@ void check_mechanics(const ArmConfig& arm, Reader& reader) {
   if (arm.mechanics != ArmMechanics::dynamics) {
     const auto refuse = [&](bool is_there, const char* what) {
       if (is_there)
-        reader.problem_at(what, "is only for dynamic arms: expected model = \"dynamic\", or no such table");
+        reader.problem_at(
+            what, "is only for dynamic arms: expected model = \"dynamic\", or this table to be absent");
     };
     refuse(arm.contact.has_value(), "contact");
     refuse(arm.drag.has_value(), "drag");

@@ -13,9 +13,8 @@ namespace flexura {
 
 struct ArmConfig;
 
-/// Mechanical model of an arm. With `kinematic` the shape follows the commands. With `statics` sections are
-/// elastic rods, in equilibrium with their tendons, gravity and loads. With `dynamics` these rods move with
-/// their inertia.
+/// Mechanical model of an arm. `kinematic`: the shape follows the commands. `statics`: sections are elastic
+/// rods in equilibrium with their tendons, gravity and loads. `dynamics`: these rods have inertia.
 enum class ArmMechanics { kinematic, statics, dynamics };
 
 /// Route of a tendon from the arm's base to the end of one section, `[[arm.tendon]]`. Let s be the arc length
@@ -28,8 +27,9 @@ struct TendonRouteConfig {
   double angle = 0;          ///< Angle around the backbone at the base, from x towards y, rad.
   /// Distance from the backbone at the tendon's end, m; default: `radius`.
   std::optional<double> end_radius = {};
-  double turns = 0;  ///< Turns around the backbone from the arm's base to the tendon's end, from x towards y.
-  /// Coefficients of x(s) and y(s), from the power 0 of s up: m, m/m, ...
+  /// Number of turns around the backbone from the arm's base to the tendon's end, from x towards y.
+  double turns = 0;
+  /// Coefficients of the polynomials x(s) and y(s), by increasing power of s from 0: m, m/m, ...
   std::vector<double> x = {}, y = {};
   double compliance = 0;                 ///< Elongation of the tendon per tension, m/N.
   double friction = 0;                   ///< Coulomb friction coefficient along the route.
@@ -45,7 +45,7 @@ struct LoadConfig {
   std::int64_t section = 1;  ///< Section with the loaded end, counted from 1 at the base.
   std::array<double, 3> force = {
       0, 0, 0};  ///< Force in the world's frame, N; if `following`, in the frame of the section's end.
-  std::array<double, 3> moment = {0, 0, 0};  ///< Moment in the same frame as the force, N m.
+  std::array<double, 3> moment = {0, 0, 0};  ///< Moment in the frame of `force`, N m.
   bool following = false;                    ///< Whether force and moment rotate with the section's end.
 };
 
@@ -53,9 +53,9 @@ const std::vector<std::string>& names_of(const ArmMechanics*);
 const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*);
 const Table<LoadConfig>& fields_of(const LoadConfig*);
 
-/// Reports errors of the tendons, loads and materials of `arm`, which is at the current place of `reader`.
-/// Errors are a section number that the arm does not have and a tendon outside the tube. Further errors are a
-/// section of a static or dynamic arm without a material, and a section of a dynamic arm without a mass.
+/// Reports errors of the tendons, loads and materials of `arm`. `reader` must be at the arm's table. Errors
+/// are a wrong section number and a tendon that leaves the tube. Further errors are a section of a static or
+/// dynamic arm without a material, and a section of a dynamic arm without a mass.
 void check_mechanics(const ArmConfig& arm, Reader& reader);
 
 }  // namespace flexura

@@ -12,16 +12,17 @@ namespace flexura {
 /// shapes. If every section is one arc, driven() and shaped() are the same arm.
 class ArmModel {
  public:
-  /// Uses Actuation(driven), and throws the same exceptions.
+  /// Uses Actuation(driven). Throws the exceptions of that constructor.
   explicit ArmModel(const Arm& driven)
       : driven_(driven), actuation_(driven), shaped_(shaped_arm(driven, actuation_)) {}
   /// Uses the given actuation; `shaped` has one section for each arc.
   ArmModel(const Arm& driven, const Actuation& actuation, const Arm& shaped)
       : driven_(driven), actuation_(actuation), shaped_(shaped) {}
 
-  /// Returns the arm with its sections as the drives bend them: one bend per section.
+  /// Returns the arm in terms of the sections that the drives bend. Its states, the commands, have one bend
+  /// per section.
   [[nodiscard]] const Arm& driven() const { return driven_; }
-  /// Returns the arm with one section per arc.
+  /// Returns the arm with one section per arc. Its states are shapes.
   [[nodiscard]] const Arm& shaped() const { return shaped_; }
   [[nodiscard]] const Actuation& actuation() const { return actuation_; }
 

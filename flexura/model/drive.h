@@ -11,8 +11,8 @@
 
 namespace flexura {
 
-/// Displacements of all tendons of a drive. A positive displacement makes the tendon shorter than along the
-/// straight, unstretched arm. A separate type distinguishes displacements from tensions.
+/// Displacements of all tendons of a drive. A tendon with a positive displacement is shorter than along the
+/// straight, unstretched arm. The type distinguishes displacements from tensions.
 struct TendonDisplacements {
   std::vector<double> pulled;  ///< Displacement of each tendon, m.
 };
@@ -20,9 +20,9 @@ struct TendonDisplacements {
 /// A cable parallel to the backbone, from the arm's base to the end of one section, through all sections in
 /// between.
 struct Tendon {
-  std::size_t section = 0;  ///< Section at the end of which the tendon ends, 0 at the base.
+  std::size_t section = 0;  ///< Index of the section at whose end the tendon ends; 0 at the base.
   double radius = 0.015;    ///< Distance from the backbone, m; > 0.
-  double angle = 0;         ///< Angle around the backbone's z from its x, rad; the same in every section.
+  double angle = 0;  ///< Angle around the backbone's z axis from its x axis, rad; equal in all sections.
 
   /// Returns the tendon's offset from the backbone in a cross-section: radius (cos angle, sin angle), m.
   [[nodiscard]] Eigen::Vector2d offset() const;
@@ -31,7 +31,7 @@ struct Tendon {
 /// A stepper motor with its controller. Motor positions are counted in microsteps.
 struct StepperMotor {
   std::int64_t phases = 3;       ///< Number of phases of the windings; at least 2.
-  std::int64_t steps = 300;      ///< Full steps per turn; a multiple of `phases`.
+  std::int64_t steps = 300;      ///< Full steps per revolution; a multiple of `phases`.
   std::int64_t microsteps = 10;  ///< Microsteps per full step.
   double max_speed = std::numeric_limits<double>::infinity();  ///< Largest speed of the motor, rad/s.
   /// Largest acceleration of the motor, rad/s^2.
@@ -40,16 +40,16 @@ struct StepperMotor {
   double max_step_rate = std::numeric_limits<double>::infinity();
   /// Largest distance from position 0 in either direction, microsteps.
   double max_position = std::numeric_limits<double>::infinity();
-  /// Pull-out torque as pairs of speed, rad/s, and torque, N m, in order of increasing speed. Outside the
-  /// given speeds the torque is constant. Default: unlimited torque.
+  /// Pull-out torque as pairs of speed (rad/s) and torque (N m), in order of increasing speed. Outside the
+  /// range of these speeds, the torque is constant. Default: unlimited torque.
   std::optional<std::vector<std::array<double, 2>>> pull_out = {};
 
   /// Returns the microsteps per turn.
   [[nodiscard]] double resolution() const { return static_cast<double>(steps * microsteps); }
   /// Returns the torque, N m, above which the motor loses steps at a speed, rad/s.
   [[nodiscard]] double pull_out_torque(double speed) const;
-  /// Returns the distance in microsteps between positions at which the rotor can lock to the windings' field.
-  /// The distance is one turn of the field: two full steps per phase.
+  /// Returns the number of microsteps between positions at which the rotor can lock to the windings' field.
+  /// It is one turn of the field, which is two full steps per phase.
   [[nodiscard]] double field_turn() const { return static_cast<double>(2 * phases * microsteps); }
 };
 
@@ -57,7 +57,7 @@ struct StepperMotor {
 /// is constant.
 struct Spool {
   double radius = 0.01;  ///< Distance from the spool's axis to the middle of the cable, m; > 0.
-  double gear = 1;       ///< Turns of the motor per turn of the spool; > 0.
+  double gear = 1;       ///< Gear ratio: revolutions of the motor per revolution of the spool; > 0.
   double backlash = 0;   ///< Backlash between motor and spool, measured at the spool, rad; >= 0.
 };
 
@@ -81,11 +81,12 @@ struct Axis {
 struct Drive {
   std::vector<Tendon> tendons;
   std::vector<Axis> axes;
-  /// Number of equal pieces into which guide disks divide each section; tendons are straight between disks.
+  /// Number of equal pieces into which guide disks divide each section. Tendons are straight between disks.
   /// Default: tendons run in a continuous channel.
   std::optional<std::int64_t> disks;
-  std::size_t axes_per_controller = 4;  ///< Axes per controller; > 0. Only used for the names of axes.
-  /// Tension of each tendon of an elastic arm with all motors at position 0 and without other loads, N; >= 0.
+  std::size_t axes_per_controller = 4;  ///< Axes per controller; > 0. It only affects the names of axes.
+  /// Tension of each tendon of an elastic arm if all motors are at position 0 and the arm has no other loads,
+  /// N; >= 0.
   double pretension = 0;
 
   /// Returns "CONTROLLER.AXIS", both counted from 1: the fifth axis is "2.1" if a controller has four.

@@ -94,7 +94,7 @@ Table<StepperMotor>& add_limits(Table<StepperMotor>& table) {
       .field("pull_out", &StepperMotor::pull_out,
              {.meaning =
                   "Pull-out torque as pairs [speed in rad/s, torque in N m], in order of speed, with linear "
-                  "interpolation. The motor loses steps where a tendon of an elastic arm needs more.",
+                  "interpolation. The motor loses steps if a tendon of an elastic arm needs more torque.",
               .range = between(0, 1e9),
               .count = {1, 1000},
               .default_text = "no limit"});
@@ -114,13 +114,15 @@ const Table<StepperMotor>& fields_of(const StepperMotor*) {
     motor.check([](const StepperMotor& value, Reader& reader) {
       for (std::size_t i = 1; value.pull_out && i < value.pull_out->size(); ++i) {
         if ((*value.pull_out)[i][0] > (*value.pull_out)[i - 1][0]) continue;
-        reader.problem_at(fmt::format("pull_out[{}]", i), "expected a higher speed than in the pair before");
+        reader.problem_at(fmt::format("pull_out[{}]", i),
+                          "expected a higher speed than in the previous pair");
         break;
       }
       if (value.steps % value.phases == 0) return;
-      reader.problem_at("steps", fmt::format("{} full steps per turn of a motor with {} phases: expected a "
-                                             "multiple of the phases",
-                                             value.steps, value.phases));
+      reader.problem_at("steps",
+                        fmt::format("{} full steps per revolution of a motor with {} phases: expected a "
+                                    "multiple of the phases",
+                                    value.steps, value.phases));
     });
     return motor;
   }();
@@ -137,8 +139,8 @@ const Table<Spool>& fields_of(const Spool*) {
           .field("gear", &Spool::gear,
                  {.meaning = "Gear ratio: motor turns per spool turn.", .range = above_up_to(0, 1e6)})
           .field("backlash", &Spool::backlash,
-                 {.meaning = "Backlash between motor and spool, at the spool: motor travel without motion "
-                             "after a reversal.",
+                 {.meaning = "Backlash between motor and spool, measured at the spool: rotation without "
+                             "effect on the cable after a reversal.",
                   .unit = Unit::radian,
                   .range = between(0, 10)});
   return table;
@@ -165,14 +167,14 @@ const Table<TendonConfig>& fields_of(const TendonConfig*) {
                   .default_text = "the drive's"})
           .field("reversed", &TendonConfig::reversed,
                  {.meaning = "Whether positive microsteps let the cable out instead of pulling it in."})
-          .field(
-              "motor", &TendonConfig::motor,
-              {.meaning = "Motor of this tendon. Its keys have their own defaults, not the drive's values.",
-               .default_text = "the drive's"})
-          .field(
-              "spool", &TendonConfig::spool,
-              {.meaning = "Spool of this tendon. Its keys have their own defaults, not the drive's values.",
-               .default_text = "the drive's"});
+          .field("motor", &TendonConfig::motor,
+                 {.meaning = "Motor of this tendon. Omitted keys have the defaults of [drive.motor], not the "
+                             "values written there.",
+                  .default_text = "the drive's"})
+          .field("spool", &TendonConfig::spool,
+                 {.meaning = "Spool of this tendon. Omitted keys have the defaults of [drive.spool], not the "
+                             "values written there.",
+                  .default_text = "the drive's"});
   return table;
 }
 
@@ -180,7 +182,7 @@ const Table<DriveConfig>& fields_of(const DriveConfig*) {
   static const auto table =
       Table<DriveConfig>("drive", "Tendon drive of the arm: spools turned by stepper motors.")
           .field("radius", &DriveConfig::radius,
-                 {.meaning = "Distance from the backbone of tendons without a `radius`.",
+                 {.meaning = "Distance from the backbone for tendons without a `radius` of their own.",
                   .unit = Unit::metre,
                   .range = above_up_to(0, 1e3)})
           .field("disks", &DriveConfig::disks,
@@ -189,11 +191,11 @@ const Table<DriveConfig>& fields_of(const DriveConfig*) {
                   .range = between(1, 1e6),
                   .default_text = "none: a continuous channel"})
           .field("axes_per_controller", &DriveConfig::axes_per_controller,
-                 {.meaning = "Motors per controller. Determines the names of axes in command lists.",
+                 {.meaning = "Motors per controller. It only affects the names of axes in command lists.",
                   .range = between(1, 1000)})
           .field("pretension", &DriveConfig::pretension,
-                 {.meaning =
-                      "Tension of each tendon of an elastic arm at motor position 0 without other loads, N.",
+                 {.meaning = "Tension of each tendon of an elastic arm if all motors are at position 0 and "
+                             "the arm has no other loads, N.",
                   .range = between(0, 1e9)})
           .field("motor", &DriveConfig::motor, {.meaning = "Motors."})
           .field("spool", &DriveConfig::spool, {.meaning = "Spools and gears."})
@@ -224,9 +226,9 @@ void check_drive(const DriveConfig& config, const ArmConfig& arm, const std::str
   for (std::size_t i = 0; i < config.tendon.size(); ++i) {
     if (config.tendon[i].section <= sections) continue;
     all_end = false;
-    reader.problem_at(fmt::format("{}[{}].section", tendons, i),
-                      fmt::format("ends at section {} of an arm of {}: expected 1 to {}",
-                                  config.tendon[i].section, sections, sections));
+    reader.problem_at(
+        fmt::format("{}[{}].section", tendons, i),
+        fmt::format("{}: expected a section of the arm, 1 to {}", config.tendon[i].section, sections));
   }
   if (!all_end) return;
   const Drive drive = config.drive();

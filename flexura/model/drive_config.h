@@ -11,23 +11,25 @@
 
 namespace flexura {
 
-/// One tendon in a file, `[[drive.tendon]]`. Omitted radius, motor and spool are those of the drive.
+/// One tendon in a file, `[[drive.tendon]]`. By default, radius, motor and spool are those of the drive.
 struct TendonConfig {
   std::int64_t section = 1;      ///< Section at the end of which the tendon ends, counted from 1 at the base.
   double angle = 0;              ///< Angle around the backbone, rad.
   std::optional<double> radius;  ///< Distance from the backbone, m.
-  bool reversed = false;         ///< See Axis::reversed.
-  /// A complete motor or spool that replaces the drive's.
+  /// Whether positive microsteps let the cable out instead of pulling it in (Axis::reversed).
+  bool reversed = false;
+  /// Motor or spool of this tendon, instead of the drive's.
   std::optional<StepperMotor> motor;
   std::optional<Spool> spool;
 };
 
 /// The table [drive] of a file.
 struct DriveConfig {
-  double radius = 0.015;              ///< Distance from the backbone of tendons without a radius, m.
-  std::optional<std::int64_t> disks;  ///< See Drive::disks.
+  double radius = 0.015;  ///< Distance from the backbone for tendons without a radius of their own, m.
+  /// Number of equal pieces into which guide disks divide each section (Drive::disks).
+  std::optional<std::int64_t> disks;
   std::int64_t axes_per_controller = 4;
-  double pretension = 0;  ///< See Drive::pretension, N.
+  double pretension = 0;  ///< Tension of each tendon with all motors at position 0, N (Drive::pretension).
   /// Motor and spool of tendons without their own.
   StepperMotor motor;
   Spool spool;
@@ -42,9 +44,9 @@ const Table<Spool>& fields_of(const Spool*);
 const Table<TendonConfig>& fields_of(const TendonConfig*);
 const Table<DriveConfig>& fields_of(const DriveConfig*);
 
-/// Reports to `reader` why the drive at `path` cannot move the arm. Errors are tendons that end at a section
-/// that the arm does not have, and motor positions too large to be exact integers. A further error is a
-/// section whose tendons do not determine its bend and, if variable, its stretch.
+/// Reports to `reader` why the drive at `path` cannot move the arm. Errors are a wrong section number of a
+/// tendon, and motor positions too large for exact integers. A further error is a section whose tendons do
+/// not determine its bend and its stretch (if variable).
 void check_drive(const DriveConfig& config, const ArmConfig& arm, const std::string& path, Reader& reader);
 
 }  // namespace flexura

@@ -57,8 +57,8 @@ const Table<MarkerBands>& fields_of(const MarkerBands*) {
                   .range = above_up_to(0, 1e6),
                   .default_text = "a fifth of the band spacing"})
           .field("colors", &MarkerBands::colors,
-                 {.meaning = "Colours of the bands from the base on, repeated: reflected fractions of red, "
-                             "green and blue light.",
+                 {.meaning = "Colours of the bands from base to tip, repeated cyclically: reflected "
+                             "fractions of red, green and blue light.",
                   .range = share_range,
                   .count = {1, 1000}});
   return table;
@@ -119,7 +119,7 @@ void check_look(const LookConfig& look, const Arm& arm, const std::string& path,
   };
   const auto report = [&](const char* list, std::size_t index) {
     reader.problem_at(fmt::format("{}.{}[{}]", path, list, index),
-                      fmt::format("is not on the arm: expected from 0 to {:.6g} m", length));
+                      fmt::format("is not on the arm: expected 0 to {:.6g} m", length));
   };
   bool all_on_arm = true;
   for (std::size_t i = 0; i < look.marker.size(); ++i)
@@ -129,7 +129,8 @@ void check_look(const LookConfig& look, const Arm& arm, const std::string& path,
   if (!all_on_arm) return;
   const std::vector<Marker> markers = look.markers(arm);
   if (markers.size() > max_marks) {
-    reader.problem_at(path, fmt::format("makes {} bands: expected at most {}", markers.size(), max_marks));
+    reader.problem_at(path,
+                      fmt::format("results in {} bands: expected at most {}", markers.size(), max_marks));
     return;
   }
   for (std::size_t i = 0; i + 1 < markers.size(); ++i) {
@@ -137,7 +138,7 @@ void check_look(const LookConfig& look, const Arm& arm, const std::string& path,
       continue;
     reader.problem_at(
         path,
-        fmt::format("has overlapping markers at {:.6g} m and {:.6g} m: expected markers that do not overlap",
+        fmt::format("has markers at {:.6g} m and {:.6g} m that overlap: expected markers that do not overlap",
                     markers[i].at, markers[i + 1].at));
     return;
   }

@@ -17,8 +17,8 @@ using ColorConfig = std::array<double, 3>;
 /// Shape of the arm's tip: cut straight across, or a hemisphere.
 enum class TipKind { flat, round };
 
-/// A coloured band around the arm. Position and width are along the unstretched arm; the band stretches with
-/// the arm.
+/// A coloured band around the arm. Position and width are measured along the unstretched arm. The band
+/// stretches with the arm.
 struct Marker {
   double at = 0;        ///< Distance of the band's middle from the base, m.
   double width = 0.01;  ///< Width along the arm, m; > 0.
@@ -29,10 +29,11 @@ struct Marker {
 struct MarkerBands {
   std::int64_t per_section = 4;  ///< Number of bands per section. The last band ends at the section's end.
   std::optional<double> width;   ///< Width of a band along the arm, m; default: a fifth of the spacing.
-  std::vector<ColorConfig> colors = {{0.85, 0.1, 0.1}};  ///< Colours of the bands from the base on, repeated.
+  /// Colours of the bands from base to tip, repeated cyclically.
+  std::vector<ColorConfig> colors = {{0.85, 0.1, 0.1}};
 };
 
-/// A guide disk: flat, round, perpendicular to the backbone.
+/// A flat, round guide disk perpendicular to the backbone.
 struct Disk {
   double at = 0;             ///< Distance of the disk's middle from the base along the unstretched arm, m.
   double radius = 0.03;      ///< Radius, m.
@@ -48,7 +49,7 @@ struct LookConfig {
   std::vector<Disk> disk;
   ColorConfig disk_color = {0.35, 0.35, 0.37};
 
-  /// Returns all markers on an arm, those of `bands` and the single ones, base first.
+  /// Returns all markers on an arm from base to tip: those of `bands` and those of `marker`.
   [[nodiscard]] std::vector<Marker> markers(const Arm& arm) const;
 };
 
@@ -58,8 +59,8 @@ const Table<MarkerBands>& fields_of(const MarkerBands*);
 const Table<Disk>& fields_of(const Disk*);
 const Table<LookConfig>& fields_of(const LookConfig*);
 
-/// Reports to `reader` markers and disks that are not on the arm, and markers that overlap. `path` is the
-/// place of `look` in the document.
+/// Reports to `reader` markers and disks that are not on the arm, and markers that overlap. `path`: path of
+/// `look` in the document.
 void check_look(const LookConfig& look, const Arm& arm, const std::string& path, Reader& reader);
 
 }  // namespace flexura

@@ -50,7 +50,7 @@ TEST(Look, TellsMarkersThatLieOneUponTheOther) {
   LookConfig look;
   look.marker = {{.at = 0.5, .width = 0.1}, {.at = 0.55, .width = 0.1}};
   EXPECT_THAT(problems_of(look, arm_of({1, 2})),
-              testing::ElementsAre(testing::HasSubstr("has overlapping markers at 0.5 m and 0.55 m")));
+              testing::ElementsAre(testing::HasSubstr("has markers at 0.5 m and 0.55 m that overlap")));
   look.marker = {{.at = 0.5, .width = 0.1}, {.at = 0.6, .width = 0.1}};
   EXPECT_TRUE(problems_of(look, arm_of({1, 2})).empty());
 }

@@ -40,8 +40,9 @@ void check_ways(const MaterialConfig& material, Reader& reader) {
   const std::int64_t least =
       std::max<std::int64_t>(2, 1 + std::max({modes.shear, modes.stretch, modes.bend, modes.twist}));
   if (material.nodes != 0 && material.nodes < least)
-    reader.problem_at("nodes", fmt::format("{}: expected at least {}, or 0 for as many as the modes need",
-                                           material.nodes, least));
+    reader.problem_at("nodes",
+                      fmt::format("{}: expected at least {}, or 0 for the number that the modes need",
+                                  material.nodes, least));
 }
 
 Table<MaterialConfig>& add_moduli(Table<MaterialConfig>& table) {
@@ -59,7 +60,7 @@ Table<MaterialConfig>& add_moduli(Table<MaterialConfig>& table) {
       .field("density", &MaterialConfig::density, {.meaning = "Density, kg/m^3.", .range = between(0, 1e6)})
       .field("radius", &MaterialConfig::radius,
              {.meaning =
-                  "Radius of the elastic rod. Two numbers describe a taper, at the section's base and end.",
+                  "Radius of the elastic rod. Two numbers, at the section's base and end, describe a taper.",
               .unit = Unit::metre,
               .range = between(1e-6, 1e6),
               .one_for_all = true,
@@ -77,8 +78,8 @@ Table<MaterialConfig>& add_moduli(Table<MaterialConfig>& table) {
               .range = between(0, 1e6),
               .default_text = "from the density and radii"})
       .field("damping_time", &MaterialConfig::damping_time,
-             {.meaning = "Damping over stiffness of a dynamic arm (Kelvin-Voigt): time constant with which a "
-                         "free strain decays.",
+             {.meaning = "Ratio of damping to stiffness of a dynamic arm (Kelvin-Voigt): the time constant "
+                         "with which a free strain decays.",
               .unit = Unit::second,
               .range = between(0, 1e3)});
 }
@@ -99,12 +100,11 @@ const Table<StiffnessConfig>& fields_of(const StiffnessConfig*) {
 
 const Table<ModesConfig>& fields_of(const ModesConfig*) {
   static const auto table =
-      Table<ModesConfig>(
-          "modes",
-          "Number of polynomials in arc length for each strain of a section. 1: constant "
-          "strain; 0: strain fixed at its rest value. In a section with up to 11 pieces between "
-          "disks and at least 3 for the bend, each piece has its own polynomials, fewer the "
-          "more pieces there are.")
+      Table<ModesConfig>("modes",
+                         "Number of polynomials in arc length for each strain of a section. 1: constant "
+                         "strain; 0: strain fixed at its rest value. If guide disks divide the section into "
+                         "up to 11 pieces and `bend` is at least 3, each piece has its own polynomials. "
+                         "Their number per piece decreases with the number of pieces.")
           .field("shear", &ModesConfig::shear, modes("each of the two shear strains"))
           .field("stretch", &ModesConfig::stretch, modes("the axial strain"))
           .field("bend", &ModesConfig::bend, modes("each of the two curvatures"))
@@ -135,8 +135,8 @@ const Table<MaterialConfig>& fields_of(const MaterialConfig*) {
         .field("rest_bend", &MaterialConfig::rest_bend,
                {.meaning = "Bend vector of the unloaded section.", .unit = Unit::radian, .range = bend_range})
         .field("rest_twist", &MaterialConfig::rest_twist,
-               {.meaning = "Twist of the unloaded section: rotation of its end about the backbone relative "
-                           "to its base, from x towards y.",
+               {.meaning = "Twist of the unloaded section: rotation of the section's end relative to its "
+                           "base about the backbone, from x towards y.",
                 .unit = Unit::radian,
                 .range = bend_range})
         .field("disks", &MaterialConfig::disks,
@@ -146,8 +146,8 @@ const Table<MaterialConfig>& fields_of(const MaterialConfig*) {
                 .default_text = "none: a continuous channel"})
         .field("modes", &MaterialConfig::modes, {.meaning = "Resolution of the strains."})
         .field("nodes", &MaterialConfig::nodes,
-               {.meaning = "Number of quadrature nodes along the section, ends included; more than the modes "
-                           "of any strain. 0: chosen from the modes.",
+               {.meaning = "Number of quadrature nodes along the section, including both ends. It must "
+                           "exceed the number of modes of any strain. 0: chosen from the modes.",
                 .range = between(0, 64)})
         .field("mass", &MaterialConfig::mass,
                {.meaning = "Bodies on the section, as tables [[arm.section.material.mass]].",
@@ -164,8 +164,9 @@ void check_material(const MaterialConfig& material, const std::array<double, 2>&
   const std::array<double, 2> radius = material.radius.value_or(tube_radius);
   for (std::size_t i = 0; i < 2; ++i) {
     if (material.inner_radius[i] < radius[i]) continue;
-    reader.problem_at(path + ".inner_radius", fmt::format("{} m in a rod of radius {} m: expected less",
-                                                          material.inner_radius[i], radius[i]));
+    reader.problem_at(path + ".inner_radius",
+                      fmt::format("{} m in a rod of radius {} m: expected a smaller radius",
+                                  material.inner_radius[i], radius[i]));
     return;
   }
 }

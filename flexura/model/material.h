@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// Poisson's ratio of a material in a file that gives neither Poisson's ratio nor a shear modulus. Typical of
+/// Poisson's ratio of a material if a file has neither Poisson's ratio nor a shear modulus. It is typical of
 /// metals.
 inline constexpr double common_poisson = 0.3;
 
@@ -22,8 +22,8 @@ struct StiffnessConfig {
   double twist = 1;                      ///< Torsional stiffness GJ, N m^2.
 };
 
-/// Number of Legendre polynomials in arc length for each strain of a section. With 0 the strain is fixed at
-/// its rest value.
+/// Number of Legendre polynomials in arc length for each strain of a section. A strain with the number 0 is
+/// fixed at its rest value.
 struct ModesConfig {
   std::int64_t shear = 1;  ///< Number for each of the two shear strains.
   std::int64_t stretch = 1;
@@ -38,12 +38,12 @@ struct BodyConfig {
   std::array<double, 3> offset = {0, 0, 0};  ///< Centre of mass in the cross-section's frame, m.
 };
 
-/// Material of the elastic rod in a section, `[arm.section.material]`. Either moduli and radii or `stiffness`
-/// give the rod's stiffness.
+/// Material of the elastic rod in a section, `[arm.section.material]`. The rod's stiffness is computed from
+/// moduli and radii, or given by `stiffness`.
 struct MaterialConfig {
   std::optional<double> youngs_modulus = {};  ///< Young's modulus E, Pa.
   std::optional<double> shear_modulus = {};   ///< Shear modulus G, Pa.
-  /// Poisson's ratio nu, with G = E / (2 (1 + nu)); not together with a shear modulus.
+  /// Poisson's ratio nu, with G = E / (2 (1 + nu)); not allowed with a shear modulus.
   std::optional<double> poisson = {};
   double density = 0;  ///< Density, kg/m^3.
   /// Outer radius of the rod at the section's base and end, m; default: the tube's radius.
@@ -54,12 +54,13 @@ struct MaterialConfig {
   std::optional<double> mass_per_length = {};  ///< Mass per length of the rod, instead of the density, kg/m.
   double damping_time = 0;                     ///< Ratio of damping to stiffness (Kelvin-Voigt), s.
   std::array<double, 2> rest_bend = {0, 0};    ///< Bend vector of the unloaded section, rad.
-  /// Rotation of the unloaded section's end about the backbone relative to its base, rad.
+  /// Twist of the unloaded section: rotation of its end relative to its base about the backbone, rad.
   double rest_twist = 0;
-  /// Number of equal pieces of the section between guide disks; tendons are straight in each piece.
+  /// Number of equal pieces into which guide disks divide the section. Tendons are straight in each piece.
   std::optional<std::int64_t> disks = {};
   ModesConfig modes = {};
-  std::int64_t nodes = 0;  ///< Number of quadrature nodes along the section; 0: as many as the modes need.
+  /// Number of quadrature nodes along the section; 0: the number that the modes need.
+  std::int64_t nodes = 0;
   std::vector<BodyConfig> mass = {};  ///< Bodies fixed to the section, in any order.
 };
 
@@ -68,8 +69,8 @@ const Table<ModesConfig>& fields_of(const ModesConfig*);
 const Table<BodyConfig>& fields_of(const BodyConfig*);
 const Table<MaterialConfig>& fields_of(const MaterialConfig*);
 
-/// Reports to `reader` a bore that is not narrower than the rod. `path` is the place of `material` in the
-/// document; `tube_radius` has the radii of the section's tube at its base and end, m.
+/// Reports to `reader` a bore that is not narrower than the rod. `path`: path of `material` in the document.
+/// `tube_radius`: radii of the section's tube at its base and end, m.
 void check_material(const MaterialConfig& material, const std::array<double, 2>& tube_radius,
                     const std::string& path, Reader& reader);
 

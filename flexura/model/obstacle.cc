@@ -17,20 +17,21 @@ template <class S>
 Table<S> obstacle_table(const char* kind, const char* meaning) {
   Table<S> table(kind, meaning);
   table
-      .field(
-          "name", &S::name,
-          {.meaning = "Name of the obstacle in messages.", .default_text = "its kind and place in the list"})
+      .field("name", &S::name,
+             {.meaning = "Name of the obstacle in messages.",
+              .default_text = "its kind and position in the list"})
       .field("ignore_base", &S::ignore_base,
-             {.meaning = "Length of the unstretched arm, from its base, that may touch the obstacle, such as "
-                         "a support.",
+             {.meaning = "Length from the arm's base, along the unstretched arm, that may touch the "
+                         "obstacle. An example is an arm on a support.",
               .unit = Unit::metre,
               .range = between(0, 1e6)})
       .field("may_touch", &S::may_touch,
-             {.meaning = "Whether all of the arm may touch the obstacle, to grasp it or to lean on it."})
+             {.meaning =
+                  "Whether the whole arm may touch the obstacle, for example to grasp it or to lean on it."})
       .field("color", &S::color,
-             {.meaning = "Fractions of red, green and blue light that the obstacle reflects. Cameras that "
-                         "look for a dark arm also see dark obstacles before their screens, but not "
-                         "obstacles as light as the default.",
+             {.meaning = "Fractions of red, green and blue light that the obstacle reflects. If cameras "
+                         "detect a dark arm, dark obstacles in front of the screens disturb the detection. "
+                         "Obstacles with the default colour do not.",
               .range = share_range});
   return table;
 }
@@ -104,7 +105,7 @@ const Table<PlaneConfig>& fields_of(const PlaneConfig*) {
       obstacle_table<PlaneConfig>("plane", "A plane that the arm must not pass, such as the ground.")
           .field("point", &PlaneConfig::point, place("A point of the plane.", false))
           .field("normal", &PlaneConfig::normal,
-                 {.meaning = "Normal of the plane, towards the side of the arm; any length above 0.",
+                 {.meaning = "Normal of the plane, towards the side of the arm; its length must be above 0.",
                   .range = coordinate_range})
           .check([](const PlaneConfig& plane, Reader& reader) {
             if (!(vector(plane.normal).norm() > 0))

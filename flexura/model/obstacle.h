@@ -14,14 +14,16 @@ namespace flexura {
 
 /// A convex body that the arm must not touch.
 struct Obstacle {
-  std::string name = {};   ///< Name in messages.
-  double ignore_base = 0;  ///< Length of the unstretched arm, from its base, that may touch the obstacle, m.
-  /// Signed distance of a point in W from the obstacle's surface, m; negative inside. A convex function.
+  std::string name = {};  ///< Name in messages.
+  /// Length from the arm's base, along the unstretched arm, that may touch the obstacle, m.
+  double ignore_base = 0;
+  /// Signed distance of a point in W from the obstacle's surface, m: a convex function that is negative
+  /// inside.
   std::function<double(const Eigen::Vector3d& p_W)> distance;
-  /// For a plane: the unit normal in W, in whose direction `distance` increases.
+  /// Unit normal of a plane in W. In its direction `distance` increases.
   std::optional<Eigen::Vector3d> normal{};
-  /// The plane of a side of a box: the points p_W with normal . p_W = offset. The normal is a unit vector in
-  /// W and points outwards; the offset is in m. `distance` is nowhere less than the height above this plane.
+  /// The plane of a side of a box: all points p_W with normal . p_W = offset (m). The normal is a unit vector
+  /// in W that points outwards. The height of a point above this plane never exceeds `distance`.
   struct Side {
     Eigen::Vector3d normal;
     double offset = 0;
@@ -34,26 +36,28 @@ inline constexpr std::array<double, 3> obstacle_color = {0.4, 0.45, 0.4};
 
 /// A half space: all points on the side of a plane that is opposite to the plane's normal.
 struct PlaneConfig {
-  std::string name = {};   ///< Name in messages; "": the obstacle's kind and position in the list.
-  double ignore_base = 0;  ///< See Obstacle::ignore_base, m.
+  std::string name = {};  ///< Name in messages; "": the obstacle's kind and position in the list.
+  /// Length from the arm's base that may touch the obstacle, m (Obstacle::ignore_base).
+  double ignore_base = 0;
   bool may_touch = false;  ///< Whether the arm may touch the obstacle, for example to grasp it.
-  std::array<double, 3> point = {0, 0, 0};   ///< A point of the plane, in W, m.
-  std::array<double, 3> normal = {0, 1, 0};  ///< Normal in W, away from the half space; any length above 0.
+  std::array<double, 3> point = {0, 0, 0};  ///< A point of the plane, in W, m.
+  /// Normal in W, which points out of the half space. Its length must be above 0.
+  std::array<double, 3> normal = {0, 1, 0};
   std::array<double, 3> color = obstacle_color;  ///< Reflected fractions of red, green and blue light.
 };
 
-/// A sphere. The members that PlaneConfig has too have the same meaning.
+/// A sphere. The members name, ignore_base, may_touch and color are as in PlaneConfig.
 struct SphereConfig {
   std::string name = {};
   double ignore_base = 0;
   bool may_touch = false;
-  std::array<double, 3> center = {0, 0, 0};  ///< In W, m.
+  std::array<double, 3> center = {0, 0, 0};  ///< Centre in W, m.
   double radius = 0;                         ///< m.
   std::array<double, 3> color = obstacle_color;
 };
 
-/// A capsule: all points within `radius` of a line segment. The members that PlaneConfig has too have the
-/// same meaning.
+/// A capsule: all points within `radius` of a line segment. The members name, ignore_base, may_touch and
+/// color are as in PlaneConfig.
 struct CapsuleConfig {
   std::string name = {};
   double ignore_base = 0;
@@ -64,12 +68,12 @@ struct CapsuleConfig {
   std::array<double, 3> color = obstacle_color;
 };
 
-/// A box. The members that PlaneConfig has too have the same meaning.
+/// A box. The members name, ignore_base, may_touch and color are as in PlaneConfig.
 struct BoxConfig {
   std::string name = {};
   double ignore_base = 0;
   bool may_touch = false;
-  std::array<double, 3> center = {0, 0, 0};  ///< In W, m.
+  std::array<double, 3> center = {0, 0, 0};  ///< Centre in W, m.
   /// Half the lengths of the edges along the box's x, y and z, m.
   std::array<double, 3> half_sizes = {0, 0, 0};
   /// Unit quaternion (w, x, y, z) from the box's axes to the world.
@@ -85,7 +89,7 @@ const Table<SphereConfig>& fields_of(const SphereConfig*);
 const Table<CapsuleConfig>& fields_of(const CapsuleConfig*);
 const Table<BoxConfig>& fields_of(const BoxConfig*);
 
-/// Returns the obstacles that the tables describe. An obstacle without a name is named by its kind and its
+/// Returns the obstacles that the tables describe. The name of an obstacle without a name is its kind and its
 /// position in the list, counted from 1: "plane 1".
 [[nodiscard]] std::vector<Obstacle> obstacles(const std::vector<ObstacleConfig>& configs);
 

@@ -32,7 +32,8 @@ const Table<ScreenConfig>& fields_of(const ScreenConfig*) {
                   .range = coordinate_range,
                   .required = true})
           .field("normal", &ScreenConfig::normal,
-                 {.meaning = "Normal of the screen. Its height points upwards as far as possible.",
+                 {.meaning =
+                      "Normal of the screen. The direction of its height points upwards as far as possible.",
                   .range = coordinate_range})
           .field("width", &ScreenConfig::width, length_of("Width."))
           .field("height", &ScreenConfig::height, length_of("Height."))
@@ -43,10 +44,10 @@ const Table<ScreenConfig>& fields_of(const ScreenConfig*) {
               {.meaning =
                    "Relative increase of brightness from the middle to the right edge and to the upper edge.",
                .range = between(-1, 1)})
-          .field(
-              "fall_off", &ScreenConfig::fall_off,
-              {.meaning = "Relative loss of brightness in the corners. It grows with the distance squared.",
-               .range = share_range})
+          .field("fall_off", &ScreenConfig::fall_off,
+                 {.meaning = "Relative loss of brightness in the corners. The loss increases with the square "
+                             "of the distance from the middle.",
+                  .range = share_range})
           .check([](const ScreenConfig& screen, Reader& reader) {
             expect_direction(screen.normal, "normal", reader);
           });
@@ -61,8 +62,8 @@ const Table<EtalonConfig>& fields_of(const EtalonConfig*) {
                   .unit = Unit::metre,
                   .range = coordinate_range})
           .field("rotation", &EtalonConfig::rotation,
-                 {.meaning = "Quaternion (w, x, y, z) from the cylinder's axes to the world. Its axis is y; "
-                             "one red line faces z.",
+                 {.meaning = "Quaternion (w, x, y, z) from the cylinder's axes to the world. The cylinder's "
+                             "axis is y; one red line faces z.",
                   .range = between(-2, 2)})
           .field("radius", &EtalonConfig::radius, length_of("Radius."))
           .field("height", &EtalonConfig::height, length_of("Height."))
@@ -77,7 +78,7 @@ const Table<EtalonConfig>& fields_of(const EtalonConfig*) {
             if (const std::string problem = quaternion_problem(etalon.rotation); !problem.empty())
               reader.problem_at("rotation", problem);
             if (4 * etalon.line_width > 2 * std::numbers::pi * etalon.radius)
-              reader.problem_at("line_width", "is too large: expected a gap between the four lines");
+              reader.problem_at("line_width", "is too large: expected gaps between the four lines");
           });
   return table;
 }
@@ -87,7 +88,8 @@ const Table<LightConfig>& fields_of(const LightConfig*) {
       Table<LightConfig>("light", "Light on the arm, the calibration cylinder and the obstacles.")
           .field("ambient", &LightConfig::ambient, {.meaning = "Ambient light.", .range = brightness_range})
           .field("directional", &LightConfig::directional,
-                 {.meaning = "Directional light, on a surface that faces it.", .range = brightness_range})
+                 {.meaning = "Directional light on a surface that faces the light source.",
+                  .range = brightness_range})
           .field("towards", &LightConfig::towards,
                  {.meaning = "Direction towards the light source.", .range = coordinate_range})
           .field("shadow", &LightConfig::shadow,
@@ -119,7 +121,7 @@ const Table<StandConfig>& fields_of(const StandConfig*) {
                              "planes XOY and ZOY through the arm's base.",
                   .unit = Unit::metre,
                   .range = above_up_to(0, 1e6),
-                  .default_text = "all of the arm's reach in view"})
+                  .default_text = "large enough to show the arm's whole reach"})
           .field("background", &StandConfig::background,
                  {.meaning = "Light of the empty background.", .range = brightness_range})
           .field("arm", &StandConfig::arm, {.meaning = "Whether the arm is in the scene."});

@@ -13,9 +13,10 @@ namespace flexura {
 /// A flat, finite white screen behind the arm, visible from both sides.
 struct ScreenConfig {
   std::array<double, 3> center = {0, 0, 0};  ///< Centre in W, m.
-  std::array<double, 3> normal = {
-      0, 0,
-      1};  ///< Normal of the screen's front, in W. The screen's height is along W's Y as far as possible.
+  std::array<double, 3> normal = {0, 0,
+                                  /// Normal of the screen's front, in W. The direction of the screen's height
+                                  /// points along W's Y as far as possible.
+                                  1};
   double width = 1, height = 1;             ///< Size, m.
   double brightness = 0.85;                 ///< Emitted light; 1 is a camera's full scale.
   std::array<double, 2> gradient = {0, 0};  ///< Relative increase of brightness from the screen's middle to
@@ -32,14 +33,16 @@ struct EtalonConfig {
   double radius = 0.1;  ///< Radius, m.
   double height = 0.4;  ///< Height, m.
   ColorConfig color = {0.1, 0.1, 0.1};
-  double line_width = 0.01;  ///< Width of a line around the cylinder, m. The lines face E's +Z and every 90
-                             ///< degrees from there.
+  /// Width of a line around the cylinder, m. The lines are at every 90 degrees around the axis, beginning at
+  /// E's +Z.
+  double line_width = 0.01;
   ColorConfig line_color = {0.75, 0.08, 0.08};  ///< Colour of the lines.
 };
 
 /// Light on the arm, the calibration cylinder and the obstacles. Screens have their own brightness.
 struct LightConfig {
-  double ambient = 0.45;  ///< Ambient light, equal from all directions; 1 is a camera's full scale on white.
+  /// Ambient light, equal from all directions. With 1, a white surface reaches a camera's full scale.
+  double ambient = 0.45;
   double directional = 0.55;  ///< Directional light on a surface that faces the source.
   /// Direction to the source of the directional light, in W.
   std::array<double, 3> towards = {0.4, 0.8, 0.45};
@@ -54,7 +57,7 @@ struct StandConfig {
   std::optional<EtalonConfig> etalon;  ///< Calibration cylinder; default: none.
   LightConfig light;
   /// Distances D1 and D2 of the default cameras from the planes XOY and ZOY through the arm's base, as in the
-  /// paper, m. Default: large enough to have the whole reach of the arm in view.
+  /// paper, m. Default: large enough to show the arm's whole reach.
   std::optional<std::array<double, 2>> camera_distances;
   double background = 0.02;  ///< Light from directions without an object; 1 is a camera's full scale.
   bool arm = true;  ///< Whether the arm is in the scene. Calibrations with the cylinder remove the arm.

@@ -55,7 +55,7 @@ const Table<DragConfig>& fields_of(const DragConfig*) {
 
 const Table<PayloadConfig>& fields_of(const PayloadConfig*) {
   static const auto table =
-      Table<PayloadConfig>("payload", "A mass that a dynamic arm carries for a time.")
+      Table<PayloadConfig>("payload", "A mass that a dynamic arm carries temporarily.")
           .field("section", &PayloadConfig::section,
                  {.meaning = "Section that carries the payload, counted from 1 at the base.",
                   .range = between(1, 1e6),
@@ -70,7 +70,8 @@ const Table<PayloadConfig>& fields_of(const PayloadConfig*) {
                   .unit = Unit::metre,
                   .range = between(-1e3, 1e3)})
           .field("from", &PayloadConfig::from,
-                 {.meaning = "Time at which the arm picks up the payload, which is at rest until then.",
+                 {.meaning =
+                      "Time at which the arm picks up the payload. Before this time, the payload is at rest.",
                   .unit = Unit::second,
                   .range = between(0, 1e9)})
           .field("until", &PayloadConfig::until,
@@ -81,7 +82,7 @@ const Table<PayloadConfig>& fields_of(const PayloadConfig*) {
           .check([](const PayloadConfig& payload, Reader& reader) {
             if (payload.until && *payload.until <= payload.from)
               reader.problem_at("until",
-                                fmt::format("is not after from: expected more than {} s", payload.from));
+                                fmt::format("is not after `from`: expected more than {} s", payload.from));
           });
   return table;
 }

@@ -30,13 +30,14 @@ struct DragConfig {
   std::array<double, 3> flow = {0, 0, 0};  ///< Velocity of the fluid, in the world's frame, m/s.
 };
 
-/// A mass that a moving arm carries for a time, `[[arm.payload]]`.
+/// A mass that a moving arm carries temporarily, `[[arm.payload]]`.
 struct PayloadConfig {
   std::int64_t section = 1;  ///< Section that carries the payload, counted from 1 at the base.
   double at = 1;             ///< Position along the section as a fraction of its length; in [0, 1].
   double mass = 0;           ///< Mass, kg.
   std::array<double, 3> offset = {0, 0, 0};  ///< Centre of mass in the cross-section's frame, m.
-  double from = 0;  ///< Time at which the arm picks up the payload, s. The payload is at rest until then.
+  /// Time at which the arm picks up the payload, s. Before this time, the payload is at rest.
+  double from = 0;
   std::optional<double> until = {};  ///< Time at which the arm drops the payload, s; default: never.
 };
 

@@ -156,7 +156,7 @@ TEST(BadPicture, OfAFormThatIsNotReadIsCalledSo) {
       "bits");
   EXPECT_EQ(complaint(tiff_file(Image<std::uint8_t>(9, 9),
                                 {.bits = 1, .compression = COMPRESSION_JBIG, .rows = 9})),
-            "the TIFF file has compression 34661: expected a usual one");
+            "the TIFF file has compression 34661: expected a common compression");
   EXPECT_EQ(complaint("P5 1 1 65536\n"), "the PNM file has 65536 for white: expected 1 to 65535");
 }
 

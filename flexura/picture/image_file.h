@@ -30,10 +30,10 @@ struct PngConfig {
 /// - `PNM`: P1 to P6.
 ///
 /// The result has one channel for gray, including palettes of only grays, and otherwise three channels (red,
-/// green, blue). Values of up to 8 bits are scaled to 0 to 255; values of more bits are as in the file,
-/// stored in 16 bits. Orientation, alpha and colour profile of the file are ignored; transparent parts keep
-/// their colour. For other common kinds (BMP, WebP, JPEG 2000, OpenEXR, ...) the error message gives the name
-/// of the kind.
+/// green, blue). Values with up to 8 bits are scaled to 0 to 255. Values with more bits are as in the file,
+/// stored in 16 bits. Orientation, alpha and colour profile of the file are ignored. Transparent parts keep
+/// their colour. For other common kinds (BMP, WebP, JPEG 2000, OpenEXR, ...), the error message states the
+/// kind.
 ///
 /// Throws InputError with one line, which begins with `name`, if the file is of another kind, truncated,
 /// damaged or without pixels. Also throws it for more than `most_pixels` pixels, before allocating memory for
@@ -41,7 +41,7 @@ struct PngConfig {
 [[nodiscard]] Picture read_picture(std::span<const std::uint8_t> file, const std::string& name,
                                    std::size_t most_pixels);
 
-/// Reads a PNG file only. Throws std::runtime_error for anything else.
+/// Reads a PNG file. Throws std::runtime_error for other files.
 [[nodiscard]] Picture read_png(std::string_view bytes, std::size_t most_pixels = std::size_t{1} << 26);
 
 /// Compression of a JPEG file.

@@ -26,7 +26,7 @@ void take(png_structp reader, png_bytep data, png_size_t size) {
   auto* input = static_cast<PngInput*>(png_get_io_ptr(reader));
   if (size > input->rest.size()) {
     input->is_cut_short = true;
-    png_error(reader, "it ends early");
+    png_error(reader, "the file ends early");
   }
   std::memcpy(data, input->rest.data(), size);
   input->rest.remove_prefix(size);

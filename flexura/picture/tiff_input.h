@@ -32,7 +32,7 @@ using OpenTiff = std::unique_ptr<TIFF, CloseTiff>;
 /// allocates at most `most_bytes` at once. Throws std::runtime_error if `input` is not a TIFF file.
 [[nodiscard]] OpenTiff open_tiff(TiffInput* input, std::size_t most_bytes);
 
-/// Reads a file with other colours than gray or RGB, converted by libtiff to red, green and blue of 8 bits
+/// Reads a file with colours other than gray or RGB. libtiff converts them to red, green and blue with 8 bits
 /// each. The caller must have checked the size. Throws std::runtime_error for a damaged file, or for colours
 /// that libtiff cannot convert.
 [[nodiscard]] Image<std::uint8_t> read_mixed_tiff(TIFF* open, const TiffInput& input);

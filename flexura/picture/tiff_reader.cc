@@ -63,7 +63,7 @@ void read_form(TIFF* open, TiffLayout* layout) {
   // compression is ambiguous.
   if (TIFFIsCODECConfigured(compression) == 0 || compression == COMPRESSION_JBIG ||
       compression == COMPRESSION_OJPEG)
-    refuse_tiff(fmt::format("compression {}", compression), "a usual one");
+    refuse_tiff(fmt::format("compression {}", compression), "a common compression");
   read_values(open, layout);
   layout->photometric = field<std::uint16_t>(open, TIFFTAG_PHOTOMETRIC,
                                              layout->samples < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB);
@@ -93,7 +93,7 @@ void read_blocks(TIFF* open, TiffLayout* layout, std::size_t most_pixels) {
   layout->row_size = (layout->block_width * layout->samples_in_block() * layout->bits + 7) / 8;
   layout->block_size = layout->row_size * layout->block_height;
   const auto size = static_cast<std::size_t>(layout->is_tiled ? TIFFTileSize64(open) : TIFFStripSize64(open));
-  if (size != layout->block_size) throw damaged("TIFF", "blocks of another size than their pixels");
+  if (size != layout->block_size) throw damaged("TIFF", "the size of a block does not match its pixels");
 }
 
 // Returns a value of 1 to 14 bits, stored with the highest bit first, or of 16 bits in this machine's byte

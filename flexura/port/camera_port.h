@@ -12,7 +12,7 @@ namespace flexura {
 /// One image of a camera. Cheap to copy, because copies share the picture.
 struct Frame {
   std::int64_t number = 0;  ///< Number of the exposure, from 0; lost frames are counted.
-  /// Time of the middle of the exposure, s; with a rolling shutter, of the middle row's exposure.
+  /// Middle of the exposure, s; with a rolling shutter, middle of the exposure of the middle row.
   double time = 0;
   double exposure = 0;                     ///< Exposure time, s.
   double received = 0;                     ///< Time at which the frame became available, s.

@@ -15,14 +15,14 @@
 namespace flexura {
 
 /// Converts times of a device's clock to times of the rig's clock. If the device's times do not decrease, the
-/// results do not decrease, except when previous results turn out to be too late.
+/// results do not decrease either. The only exception is that previous results turn out to be too late.
 class MappedTime {
  public:
   /// `clock` must outlive this object.
   explicit MappedTime(DeviceClock& clock) : clock_(clock) {}
 
   /// Returns the time of an answer on the rig's clock, s. The parameters are those of DeviceClock::add().
-  /// Returns `device` as long as the relation of the clocks is unknown.
+  /// While the relation of the clocks is unknown, returns `device`.
   double of(double device, double earliest, double latest) {
     (void)clock_.add(device, earliest, latest);
     if (!clock_.is_known()) return device;
@@ -41,8 +41,8 @@ class MappedTime {
 template <class Port, class State, class Reading, class... Way>
 class ClockedDevice : public Port {
  public:
-  /// `age`, s, is the largest age of a reading at the time of its request. It is above 0 for a device that
-  /// reports its last cyclic measurement. The other arguments must outlive this object.
+  /// `age`: largest age of a reading at the time of the request, s. It is above 0 for a device that reports
+  /// its last cyclic measurement. The other arguments must outlive this object.
   ClockedDevice(Port& port, const ClockPort& rig, DeviceClock& clock, double age = 0)
       : port_(port), rig_(rig), time_(clock), age_(age) {}
 
@@ -71,8 +71,8 @@ using ClockedArm = ClockedDevice<ArmPort, ArmState, ArmReading, double>;
 using ClockedHead = ClockedDevice<HeadPort, HeadState, HeadReading>;
 using ClockedStage = ClockedDevice<StagePort, StageState, StageReading>;
 
-/// Port of a camera that has its own clock. The wrapped port's frames have `time` on the camera's clock, and
-/// `received` on the rig's clock, set by the program that fetches the frames.
+/// Port of a camera that has its own clock. In the wrapped port's frames, `time` is on the camera's clock.
+/// The program that fetches the frames sets `received` on the rig's clock.
 class ClockedCamera : public CameraPort {
  public:
   /// A frame is received `quickest` to `slowest` s after the middle of its exposure. `slowest` is infinite if

@@ -90,7 +90,8 @@ std::array<double, 2> DeviceClock::range(double x) const {
 }
 
 void DeviceClock::require_known() const {
-  if (!is_known()) throw std::logic_error("the device's clock is unknown: it never reported a time");
+  if (!is_known())
+    throw std::logic_error("the device's clock is unknown: the device has not reported a time");
 }
 
 double DeviceClock::rig_time(double device) const {

@@ -13,7 +13,7 @@ struct DeviceClockConfig {
   double drift = 5e-4;       ///< Largest relative rate error of the device's clock.
   double resolution = 1e-6;  ///< Resolution of the device's times, s; > 0.
   /// For answers of unknown age: an answer that seems to be quicker than all previous answers by more than
-  /// this time, s, is an outlier.
+  /// this time counts as an outlier, s.
   double jump = 1;
 };
 
@@ -21,11 +21,11 @@ struct DeviceClockConfig {
 /// device's times in answers and from the answers' times of arrival.
 ///
 /// The only assumption is that the device takes the time of an answer between its request and its arrival.
-/// Each answer then gives a lower and an upper bound on the line (offset and drift) that converts device time
-/// to rig time. The tightest bounds of each second are kept. The result is the middle between the earliest
-/// and the latest time of all lines within the bounds. Long delays give loose bounds and do no harm; a few
-/// short delays suffice. The bounds are from F. Cristian 1989, the lines from S. Moon, P. Skelly, D. Towsley
-/// 1999.
+/// Each answer then determines a lower and an upper bound on the line (offset and drift) that converts device
+/// time to rig time. The tightest bounds of each second are kept. The result is the middle between the
+/// earliest and the latest time of all lines within the bounds. Long delays result in loose bounds, which do
+/// no harm. A few short delays are sufficient. The bounds are from F. Cristian 1989, the lines from S. Moon,
+/// P. Skelly, D. Towsley 1999.
 ///
 /// If the age of answers is unknown, as for pictures, there are no lower bounds. The quickest answers within
 /// the window are then assumed to have the shortest possible delay.
@@ -36,8 +36,8 @@ class DeviceClock {
 
   /// Adds an answer: the device's time `device`, s, is between the rig's times `earliest` and `latest`, s.
   /// `earliest` is minus infinity if unknown. Returns false and ignores the answer if a number is not finite
-  /// or the answer contradicts the known bounds. From the third consecutive contradiction on, the device's
-  /// clock counts as reset, and contradicting bounds are dropped.
+  /// or the answer contradicts the known bounds. After the third consecutive contradiction, the device's
+  /// clock counts as reset, and contradicting bounds are discarded.
   bool add(double device, double earliest, double latest);
 
   /// Returns whether rig_time() has enough answers for a result.
@@ -46,7 +46,7 @@ class DeviceClock {
   /// is_known().
   [[nodiscard]] double rig_time(double device) const;
   /// Returns the largest possible error of rig_time(device) in either direction, s. If the ages of answers
-  /// are known, the result is a strict bound; otherwise it is only the spread of the quickest answers. Throws
+  /// are known, the result is a strict bound. Otherwise it is only the spread of the quickest answers. Throws
   /// std::logic_error unless is_known().
   [[nodiscard]] double uncertainty(double device) const;
   /// Returns the estimated relative rate difference by which the rig's clock is faster than the device's

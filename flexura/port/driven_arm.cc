@@ -55,7 +55,7 @@ TendonDisplacements displacements_carried(const Drive& drive, const std::vector<
                                           const std::vector<double>& carried) {
   if (zero.size() != drive.axes.size() || carried.size() != drive.axes.size())
     throw std::invalid_argument(
-        fmt::format("{} positions for a drive of {} axes", carried.size(), drive.axes.size()));
+        fmt::format("{} positions for a drive with {} axes", carried.size(), drive.axes.size()));
   TendonDisplacements displacements;
   for (std::size_t i = 0; i < carried.size(); ++i) {
     const double pulled = sense_of(drive.axes[i]) * carried[i] / drive.axes[i].microsteps_a_metre();
@@ -77,10 +77,10 @@ DrivenArm::DrivenArm(DrivePort& port, const Arm& arm, const Drive& drive, const 
       zero_(displacements_at_zero(arm, drive, initial, commander_.positions())) {
   if (port.quantity() == DriveQuantity::tendon_tensions)
     throw std::invalid_argument(
-        "a drive of tensions cannot move this arm, because no model converts tensions to shapes: expected a "
-        "drive of motor positions or of tendon displacements");
+        "a drive with tension targets cannot move this arm, because no model converts tensions to shapes: "
+        "expected a drive with targets for motor positions or tendon displacements");
   if (port.axes() != drive.axes.size())
-    throw std::invalid_argument(fmt::format("the controller has {} axes: expected {}, as the arm's drive",
+    throw std::invalid_argument(fmt::format("the controller has {} axes: expected {}, as in the arm's drive",
                                             port.axes(), drive.axes.size()));
   for (std::size_t i = 0; i < drive.axes.size(); ++i)
     followed_.push_back(sense_of(drive.axes[i]) * static_cast<double>(commander_.positions()[i]));
@@ -100,7 +100,7 @@ CommandOutcome DrivenArm::pull(const std::vector<double>& displacements, double 
   constexpr double most_microsteps = 1e15;
   for (std::size_t i = 0; i < desired.pulled.size(); ++i)
     if (!(std::abs(desired.pulled[i]) * drive_.axes[i].microsteps_a_metre() < most_microsteps))
-      return arm_refuses("a motor position is too large to be counted");
+      return arm_refuses("a motor position is too large");
   // If the controller refuses the command, the backlash remains on the same side.
   MotorCommander next = commander_;
   next.follow(desired);
@@ -113,13 +113,13 @@ CommandOutcome DrivenArm::pull(const std::vector<double>& displacements, double 
 std::string DrivenArm::problem_of(const DriveReading& reading) const {
   if (reading.values.size() != drive_.axes.size() ||
       (!reading.carried.empty() && reading.carried.size() != drive_.axes.size()))
-    return fmt::format("its drive reports {} axes and {} behind their backlash: expected {}",
+    return fmt::format("the drive reports {} motor positions and {} load positions: expected {}",
                        reading.values.size(), reading.carried.size(), drive_.axes.size());
   // Larger values do not fit into an integer of 64 bits.
   const auto is_counted = [](double value) { return std::abs(value) < 9e18; };
   if (!all_finite(reading.values) || !all_finite(reading.carried) ||
       !std::ranges::all_of(reading.values, is_counted))
-    return "its drive reports positions that are not finite or too large";
+    return "the drive reports positions that are not finite or too large";
   return "";
 }
 

@@ -23,26 +23,26 @@ namespace flexura {
 
 /// Port of an arm that a motion controller drives. Converts shapes to targets of the controller, with
 /// backlash compensation, and the controller's readings to shapes, using models of arm and drive. Hence the
-/// controller's driver needs no models.
+/// software of the controller needs no models.
 ///
-/// Motor positions or displacements of the controller are 0 for the straight, unstretched arm. Unless the
-/// controller reports positions behind the backlash, these are tracked from reading to reading. If a motor
-/// then reverses twice between two readings, the shape may have an error of up to the backlash.
+/// Motor positions or displacements of the controller are 0 for the straight, unstretched arm. If the
+/// controller does not report load positions, this class tracks the backlash from reading to reading. If a
+/// motor then reverses twice between two readings, the shape may have an error of up to the backlash.
 class DrivenArm : public ArmPort {
  public:
   /// Assumes that the arm has the shape `initial` and the motors are at nominal_positions(). `port` must
-  /// outlive this object. Throws std::invalid_argument if the controller has another number of axes than the
-  /// drive, or drive or shape do not fit the arm. Also throws it for a controller of tensions, because the
-  /// shape for given tensions needs a static model, which this class does not use.
+  /// outlive this object. Throws std::invalid_argument if the numbers of axes of controller and drive differ,
+  /// or if drive or shape do not fit the arm. Also throws it for a controller of tensions, because the shape
+  /// for given tensions needs a static model, which this class does not use.
   DrivenArm(DrivePort& port, const Arm& arm, const Drive& drive, const ArmState& initial);
 
   CommandOutcome command(const ArmState& state, double duration) override;
   CommandOutcome halt() override { return port_.halt(); }
   Outcome<ArmReading> read() override;
 
-  /// Pulls in each tendon by a displacement, m, with backlash compensation, without regard to the resulting
+  /// Pulls in each tendon by a displacement, m, with backlash compensation, regardless of the resulting
   /// shape. `duration`, s, is as for command(). The command is refused unless there is one finite
-  /// displacement per tendon, and each can be counted in microsteps.
+  /// displacement per tendon that is not too large in microsteps.
   CommandOutcome pull(const std::vector<double>& displacements, double duration);
 
  private:
@@ -61,22 +61,21 @@ class DrivenArm : public ArmPort {
       followed_;  // Positions behind the backlash, microsteps, if the port does not report them.
 };
 
-/// Returns the tendon displacements at motor positions 0, m, if the motor positions `positions`, microsteps,
-/// give the shape `state`. For nominal positions these displacements are 0 up to rounding. Throws like
-/// nominal_positions().
+/// Returns the tendon displacements at motor positions 0, m, if the arm has the shape `state` at the motor
+/// positions `positions`, microsteps. For nominal positions, these displacements are 0 up to rounding. Throws
+/// the exceptions of nominal_positions().
 [[nodiscard]] std::vector<double> displacements_at_zero(const Arm& arm, const Drive& drive,
                                                         const ArmState& state,
                                                         const std::vector<std::int64_t>& positions);
 
 /// Returns the tendon displacements, m, for spool positions `carried`, microsteps, positive in each motor's
-/// own direction. `zero` has the displacements at spool positions 0, m. Throws std::invalid_argument if the
-/// numbers of axes differ.
+/// own direction. `zero`: displacements at spool positions 0, m. Throws std::invalid_argument if the numbers
+/// of axes differ.
 [[nodiscard]] TendonDisplacements displacements_carried(const Drive& drive, const std::vector<double>& zero,
                                                         const std::vector<double>& carried);
 
 /// Returns the shape for spool positions `carried`, microsteps, positive in each motor's own direction.
-/// `zero` has the displacements at spool positions 0, m. Throws std::invalid_argument if the numbers of axes
-/// differ.
+/// `zero`: displacements at spool positions 0, m. Throws std::invalid_argument if the numbers of axes differ.
 [[nodiscard]] ArmState shape_carried(const Arm& arm, const Drive& drive, const std::vector<double>& zero,
                                      const std::vector<double>& carried);
 

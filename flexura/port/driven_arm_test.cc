@@ -140,7 +140,7 @@ TEST(DrivenArm, TellsADriveOfTensionsThatStaticsAreMissing) {
     DrivenArm(port, one_section(), three_tendons(), ArmState::straight(1));
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), HasSubstr("a drive of tensions cannot move this arm"));
+    EXPECT_THAT(error.what(), HasSubstr("a drive with tension targets cannot move this arm"));
   }
 }
 
@@ -217,7 +217,7 @@ TEST(DrivenArm, OfAControllerThatTellsNonsenseNothingIsBelieved) {
     EXPECT_THAT(arm.read().fault()->what, HasSubstr("positions that are not finite"));
   }
   port.at.pop_back();
-  EXPECT_THAT(arm.read().fault()->what, HasSubstr("reports 2 axes"));
+  EXPECT_THAT(arm.read().fault()->what, HasSubstr("reports 2 motor positions"));
 }
 
 }  // namespace

@@ -30,12 +30,12 @@ class ArmPort {
   ArmPort(const ArmPort&) = delete;
   ArmPort& operator=(const ArmPort&) = delete;
 
-  /// Moves the drives to the positions for which the model predicts the shape `state`. All drives arrive
-  /// together after `duration`, s; a drive that cannot arrive by then arrives as soon as possible. Duration 0
+  /// Moves the drives to the positions for which the model predicts the shape `state`. All drives arrive at
+  /// the same time after `duration`, s. A drive that needs longer arrives as soon as possible. Duration 0
   /// means as soon as possible. For continuous motion, each command's duration should last until the next
   /// command. A duration that is negative or not finite is also refused.
   [[nodiscard]] virtual CommandOutcome command(const ArmState& state, double duration) = 0;
-  /// Stops as fast as the drives can.
+  /// Stops all drives as fast as possible.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
   /// Returns the drives' current reading, without moving anything.
   [[nodiscard]] virtual Outcome<ArmReading> read() = 0;
@@ -58,7 +58,7 @@ class HeadPort {
 
   /// Commands pan and tilt, rad, and the zoom position. Each axis moves independently, as fast as possible.
   [[nodiscard]] virtual CommandOutcome command(const HeadState& state) = 0;
-  /// Stops as fast as the motors can.
+  /// Stops all motors as fast as possible.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
   /// Returns the motors' current reading, without moving anything.
   [[nodiscard]] virtual Outcome<HeadReading> read() = 0;
@@ -81,7 +81,7 @@ class StagePort {
 
   /// Commands the mount's offset along its axes, m. Each axis moves independently, as fast as possible.
   [[nodiscard]] virtual CommandOutcome command(const StageState& state) = 0;
-  /// Stops as fast as the motors can.
+  /// Stops all motors as fast as possible.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
   /// Returns the motors' current reading, without moving anything.
   [[nodiscard]] virtual Outcome<StageReading> read() = 0;

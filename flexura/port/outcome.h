@@ -11,8 +11,9 @@ namespace flexura {
 /// Kind of failure of a device, which can occur without an error in the program.
 enum class FaultKind {
   link_lost,  ///< The device does not answer.
-  refused,  ///< The device refuses a command, for example a position that is not finite or a shape of another
-            ///< arm.
+  /// The device refuses a command. Examples are a position that is not finite and a shape that does not fit
+  /// the arm.
+  refused,
 };
 
 /// Reason why a device did not execute a command or return a reading.

@@ -13,14 +13,15 @@
 
 namespace flexura {
 
-/// Model of a rig, an arm and its cameras: nominal or estimated by calibration. The world frame is fixed to
-/// the arm's base (docs/calibration.md, "Gauge").
+/// Model of a rig, which is an arm and its cameras. The model is nominal or estimated by calibration. The
+/// world frame is fixed to the arm's base (docs/calibration.md, "Gauge").
 struct RigModel {
   Arm arm;                         ///< Arm with one section per arc.
   std::vector<double> bend_gains;  ///< Factor on each arc's bend; empty: all 1.
   std::vector<CameraConfig> cameras;
-  Arm driven = {};  ///< Arm with its sections as the drives bend them, if any section has several arcs;
-                    ///< otherwise without sections.
+  /// If any section has several arcs: the arm in terms of the sections that the drives bend. Otherwise an arm
+  /// without sections.
+  Arm driven = {};
   /// Conversion of commands to shapes, if any section has several arcs; otherwise the identity.
   Actuation actuation = {};
 
@@ -46,16 +47,16 @@ struct RigStance {
   std::size_t camera = 0;  ///< Index in RigModel::cameras.
   HeadState head = {};
   StageState stage = {};
-  /// Index of an earlier RigStance of the observations since which the camera has neither panned nor tilted.
-  /// The error of the head's angles is then the same. Zoom and stage may have moved.
+  /// Index of an earlier RigStance of the observations, if the camera has neither panned nor tilted since
+  /// then. Both stances then have equal errors of the head's angles. Zoom and stage may have moved.
   std::optional<std::size_t> turned_as = {};
 
   /// Returns the axis positions without the camera's index.
   [[nodiscard]] CameraStance stance() const { return {head, stage}; }
 };
 
-/// Returns the view of a camera at the given axis positions, by the model. Throws std::out_of_range if the
-/// model has no such camera, or the zoom is outside the lens's table.
+/// Returns the view of a camera at the given axis positions, according to the model. Throws std::out_of_range
+/// if the model has no such camera, or the zoom is outside the lens's table.
 [[nodiscard]] View view_of(const RigModel& model, const RigStance& stance);
 
 }  // namespace flexura

@@ -14,15 +14,15 @@ namespace flexura {
 struct CameraPorts {
   std::string name;              ///< Name of the camera (CameraConfig::name).
   CameraPort* camera = nullptr;  ///< Source of frames; never null.
-  HeadPort* head = nullptr;      ///< Pan/tilt/zoom head; null if the camera has none.
-  StagePort* stage = nullptr;    ///< Stage that translates the head; null if the camera has none.
+  HeadPort* head = nullptr;      ///< Pan/tilt/zoom head; null for a camera without head.
+  StagePort* stage = nullptr;    ///< Stage that translates the head; null for a camera without stage.
 };
 
 /// All ports of a rig, simulated or real. The rig owns the ports. `clock` and `arm` are never null.
 struct RigPorts {
   ClockPort* clock = nullptr;
   ArmPort* arm = nullptr;
-  std::vector<CameraPorts> cameras;  ///< One or more cameras; tasks refer to them by their index, from 0.
+  std::vector<CameraPorts> cameras;  ///< One or more cameras. Tasks refer to cameras by their index, from 0.
 };
 
 }  // namespace flexura

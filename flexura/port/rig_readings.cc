@@ -61,13 +61,13 @@ std::variant<StanceReading, std::string> read_camera(const RigPorts& rig, std::s
   HeadState state = head.value().state;
   const ZoomTable& lens = optics.lens();
   if (lens.is_linear() && !(state.zoom > 0))
-    return fmt::format("the head of camera {} reads a zoom of {:.6g}, expected one above 0", ports.name,
+    return fmt::format("the head of camera {} reports a zoom of {:.6g}: expected a zoom above 0", ports.name,
                        state.zoom);
   const double known = std::clamp(state.zoom, lens.first(), lens.last());
   constexpr double rounding = 1e-6;
   if (std::abs(state.zoom - known) > optics.head_axes()[2].resolution + rounding * std::abs(known))
     return fmt::format(
-        "the head of camera {} reads a zoom of {:.6g}, but its lens is known from {:.6g} to {:.6g}",
+        "the head of camera {} reports a zoom of {:.6g}, but the lens's table is from {:.6g} to {:.6g}",
         ports.name, state.zoom, lens.first(), lens.last());
   state.zoom = known;
   return StanceReading{

@@ -19,13 +19,13 @@ struct StanceReading {
 };
 
 /// Returns the reading of an arm with this number of sections, or an error message. Errors are a fault, a
-/// number that is not finite, and another number of sections.
+/// number that is not finite, and a wrong number of sections.
 [[nodiscard]] std::variant<ArmReading, std::string> read_arm(ArmPort& arm, std::size_t sections);
 
 /// Returns the reading of head and stage of the rig's camera with index `camera`, or an error message. Errors
-/// are a fault, a number that is not finite, and a zoom outside the lens's table. A zoom within one
-/// resolution step of an end of the table counts as that end. `optics` is the model of this camera; its
-/// initial positions replace readings of a missing head or stage.
+/// are a fault, a number that is not finite, and a zoom outside the lens's table. A zoom that is outside the
+/// table by up to one resolution step is clamped to the table. `optics`: model of this camera. Its initial
+/// positions replace readings of a missing head or stage.
 [[nodiscard]] std::variant<StanceReading, std::string> read_camera(const RigPorts& rig, std::size_t camera,
                                                                    const Camera& optics);
 

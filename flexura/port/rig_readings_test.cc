@@ -133,11 +133,11 @@ TEST(RigReadings, AZoomWithinAStepOfTheLensesEndIsThatEnd) {
   }
   for (const double next_reading : {0.98, 4.02, -1.0}) {
     camera.head.next_reading.state.zoom = next_reading;
-    EXPECT_THAT(camera.error(), HasSubstr("but its lens is known from 1 to 4"));
+    EXPECT_THAT(camera.error(), HasSubstr("but the lens's table is from 1 to 4"));
   }
   camera.config.lens.zoom.clear();
   camera.head.next_reading.state.zoom = 0;
-  EXPECT_EQ(camera.error(), "the head of camera side reads a zoom of 0, expected one above 0");
+  EXPECT_EQ(camera.error(), "the head of camera side reports a zoom of 0: expected a zoom above 0");
   camera.head.next_reading.state.zoom = 12;
   EXPECT_EQ(std::get<StanceReading>(camera.read()).stance.head.zoom, 12);
 }

@@ -8,11 +8,11 @@
 
 namespace flexura {
 
-/// Largest distance from a ray at which borders are reported, px.
+/// Borders are reported up to this distance from a ray, px.
 inline constexpr double border_reach = 3;
 
-/// A border near a point of the image: a curve at which the visible surface or colour changes, approximated
-/// by a straight line.
+/// A border near a point of the image: a curve across which the visible surface or its colour changes. It is
+/// approximated by a straight line.
 struct Border {
   double distance = std::numeric_limits<double>::infinity();  ///< Distance from the point, px; >= 0.
   Eigen::Vector2d towards = {1, 0};                           ///< Unit vector from the point to the line.
@@ -22,8 +22,8 @@ struct Border {
   bool operator<(const Border& other) const { return distance < other.distance; }
 };
 
-/// Returns the border at which a function of the image is zero. `value` is the function's value at the ray,
-/// `by_direction` its derivative with respect to the ray's (a, b). Exact to first order.
+/// Returns the border at which a function of the image is zero. `value`: value of the function at the ray.
+/// `by_direction`: its derivative with respect to the ray's (a, b). The result is exact to first order.
 [[nodiscard]] inline Border border_of(double value, const Eigen::Vector2d& by_direction, const Ray& ray,
                                       double depth) {
   const Eigen::Vector2d by_pixel = ray.by_pixel.transpose() * by_direction;

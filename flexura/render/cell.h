@@ -12,15 +12,15 @@
 
 namespace flexura {
 
-/// Returns the ray of the image point at `offset`, px, from the image point of `ray`, with the lens
-/// linearized.
+/// Returns the ray of the image point that is `offset`, px, from the image point of `ray`. The lens is
+/// linearised.
 [[nodiscard]] inline Ray moved(const Ray& ray, const Eigen::Vector2d& offset) {
   Ray result = ray;
   result.direction.head<2>() += ray.by_pixel * offset;
   return result;
 }
 
-/// The part of a square that is beyond a straight line. The square has the side 2 half and its centre at the
+/// The part of a square beyond a straight line. The square has sides of length 2 half and its centre at the
 /// origin.
 struct SquarePart {
   std::array<Eigen::Vector2d, 6> corners;
@@ -42,15 +42,15 @@ struct Division {
   SquarePart far_part;
 };
 
-/// Linear model of the arm's arc length over a square of the image. At a distance x, px, along the normal
-/// from the square's middle, the arc length is s + slope x.
+/// Linear model of the arm's arc length over a square of the image. At the distance x, px, from the square's
+/// middle along the normal, the arc length is s + slope x.
 struct Stripes {
   Eigen::Vector2d normal;
   double slope = 0;  ///< Change of arc length per pixel along the normal, m/px; > 0.
   double s = 0;      ///< Arc length in the middle of the square, m.
 };
 /// Returns the stripes if several edges of rings cross the square around `middle` as parallel lines and no
-/// other border is in the square. Empty otherwise, also if the edges are curved too much.
+/// other border is in the square. Returns std::nullopt otherwise, and if the edges are too curved.
 [[nodiscard]] std::optional<Stripes> stripes_of(const Tracer& tracer, const Ray& middle, double half,
                                                 const Trace& here);
 
@@ -78,18 +78,18 @@ void cover_stripes(const Tracer& tracer, const Ray& middle, double half, const S
 
 enum class Verdict { uniform, divided, unclear };
 
-/// Classifies the square of side 2 half, px, around `center`, px from the pixel's ray. Uses the trace `here`
-/// in the square's middle and, if needed, a few more rays. With `is_last`, the result is the best guess
-/// instead of `unclear`.
+/// Classifies a square with sides of length 2 half, px, around `center`, px from the pixel's ray. Uses the
+/// trace `here` in the square's middle and, if needed, a few more rays. With `is_last`, returns the best
+/// guess instead of `unclear`.
 [[nodiscard]] Verdict judge(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center,
                             double half, const Trace& here, bool is_last, Division& division);
 
-/// Maximum number of halvings of a square.
+/// Maximum number of times that a square's side is halved.
 inline constexpr int most_halvings = 4;
 
-/// Integrates over the square of side 2 half around `center`: calls sink(hit, ray, area) for each uniform
-/// part. The area is in px^2; the ray is within the part or next to it. The areas add up to the square's
-/// area.
+/// Integrates over a square with sides of length 2 half around `center`: calls sink(hit, ray, area) for each
+/// uniform part. The area is in px^2. The ray is within the part or next to it. The sum of the areas is the
+/// square's area.
 template <typename Sink>
 void cover(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center, double half, int halvings,
            const Trace& seen, Sink&& sink) {

@@ -15,7 +15,7 @@ namespace flexura {
 struct PixelRange {
   int begin = 0, end = 0;
 
-  /// Returns the integers in [low, high] among 0 to size - 1.
+  /// Returns the integers in [low, high] that are between 0 and size - 1.
   static PixelRange around(double low, double high, int size) {
     const double limit = size;
     const int begin = static_cast<int>(std::clamp(std::ceil(low), 0.0, limit));
@@ -23,12 +23,12 @@ struct PixelRange {
   }
 };
 
-/// A region of the image that contains the images of all balls of a radius around the points of a line
-/// segment, plus some pixels. The region is for a lens without distortion and is never too small.
+/// A region of the image that contains the images of all balls with a given radius around the points of a
+/// line segment, with a margin of some pixels. It assumes a lens without distortion. It is never too small.
 class ImageRegion {
  public:
-  /// Returns the region for the segment from p to q, in C, m; empty if the camera is too near. Omits parts of
-  /// the balls that are farther than `beyond`, m, outside the segment's ends along the segment.
+  /// Returns the region for the segment from p to q, in C, m; std::nullopt if the camera is too near. Omits
+  /// parts of the balls that are more than `beyond`, m, past the segment's ends, measured along the segment.
   static std::optional<ImageRegion> of(const Intrinsics& lens, const Eigen::Vector3d& p,
                                        const Eigen::Vector3d& q, double radius,
                                        double beyond = std::numeric_limits<double>::infinity()) {
@@ -57,7 +57,7 @@ class ImageRegion {
   [[nodiscard]] const Eigen::Vector2d& low() const { return low_; }
   [[nodiscard]] const Eigen::Vector2d& high() const { return high_; }
 
-  /// Rows of the region, and columns in row v, within an image of `size` rows or columns.
+  /// Returns the rows of the region, or its columns in row v, within an image of `size` rows or columns.
   [[nodiscard]] PixelRange rows(int size) const { return PixelRange::around(low_.y(), high_.y(), size); }
   [[nodiscard]] PixelRange columns(int v, int size) const {
     double low = low_.x(), high = high_.x();

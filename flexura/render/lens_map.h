@@ -10,20 +10,20 @@
 namespace flexura {
 
 /// Maps each pixel to the undistorted position of its ray: the pixel at which a lens without distortion would
-/// show the ray. For a lens without distortion nothing is stored. Otherwise the map is recomputed only after
-/// a change of the lens or the image size.
+/// show the ray. For a lens without distortion, it stores nothing. For other lenses, it recomputes the map
+/// only after a change of the lens or the image size.
 class LensMap {
  public:
   void set(const RayField& rays, const Intrinsics& intrinsics);
 
-  /// Returns the positions of row v; LensRow::u is null if the lens has no distortion.
+  /// Returns the positions for row v. LensRow::u is null if the lens has no distortion.
   [[nodiscard]] LensRow row(int v) const;
   /// Sets entry `index` of `places` to the undistorted position of a pixel, with derivatives.
   void place(int u, int v, std::size_t index, SpanPlaces& places) const;
 
-  /// Returns the rows in which the region may be visible. No visible row is missing.
+  /// Returns all rows in which the region may be visible.
   [[nodiscard]] PixelRange rows(const ImageRegion& region) const;
-  /// Returns the columns of row v in which the region may be visible. No visible column is missing.
+  /// Returns all columns of row v in which the region may be visible.
   [[nodiscard]] PixelRange columns(const ImageRegion& region, int v) const;
 
  private:

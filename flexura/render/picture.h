@@ -4,9 +4,11 @@
 
 namespace flexura {
 
-/// Light on the image plane of an ideal camera. Each pixel has the mean light over its square.
+/// Light on the image plane of an ideal camera. The value of a pixel is the mean light over the pixel's
+/// square.
 struct LightImage {
-  Image<float> light;  ///< Linear light, one channel (gray) or three (red, green, blue); 1 is full scale.
+  /// Linear light with one channel (gray) or three channels (red, green, blue); 1 is full scale.
+  Image<float> light;
   Image<float>
       depth;  ///< Depth along the optical axis in the middle of each pixel, m; infinite without a surface.
 };

@@ -20,27 +20,28 @@ namespace flexura {
 /// Converts a number to single precision, which the fast path uses.
 [[nodiscard]] inline float number(double x) { return static_cast<float>(x); }
 
-/// The fast path of the renderer. It draws simple content many pixels at a time in single precision, and
+/// The fast path of the renderer. It draws simple content in single precision, many pixels at a time, and
 /// lists all other pixels for the reference path. Simple content is screens with edges, the arm's surface,
-/// contours in front of a single surface, rims of the arm's ends, and marker edges. A calibration cylinder
-/// that nothing covers is also simple content. The light agrees with the reference path to 1/500 of full
-/// scale, except at edges of markers or lines. At such edges up to 0.05 of a pixel may have the other colour.
-/// Depths agree to 1e-5 relative, nearly all to 1e-6.
+/// contours in front of a single surface, rims of the arm's ends, marker edges, and a calibration cylinder
+/// that nothing covers. The light agrees with the reference path within 1/500 of full scale, except at edges
+/// of markers or lines. At such edges, the other colour may cover up to 0.05 of a pixel. Depths agree within
+/// 1e-5 relative, nearly all within 1e-6.
 class QuickPicture {
  public:
   struct Pixel {
     int u, v;
   };
 
-  /// Uses an instruction set. Throws std::invalid_argument if this processor does not support it.
+  /// `path`: the instruction set to use. Throws std::invalid_argument if the processor does not support it.
   explicit QuickPicture(SimdPath path = best_simd_path());
 
-  /// Draws into `picture`, whose images must have the right size. Returns false, without a usable result, for
-  /// unsupported cases: shadows, a camera close to a body, and pictures less than span_step pixels wide.
+  /// Draws into `picture`, whose images must have the right size. Returns false for unsupported cases, and
+  /// then the result is not usable. Unsupported are shadows, a camera close to a body, and pictures less than
+  /// span_step pixels wide.
   bool draw(const Stage& stage, const RayField& rays, const Intrinsics& intrinsics, PixelKind pixels,
             LightImage& picture);
 
-  /// Pixels that draw() did not draw, row by row.
+  /// Returns the pixels that draw() did not draw, row by row.
   [[nodiscard]] const std::vector<Pixel>& left_out() const { return left_out_; }
 
  private:

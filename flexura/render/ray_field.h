@@ -13,18 +13,18 @@ namespace flexura {
 /// Returns the ray of the image point (u, v) of a lens without distortion.
 [[nodiscard]] Ray straight_ray(const Intrinsics& intrinsics, double u, double v);
 
-/// Returns the ray of an image point; empty if the lens's distortion maps no ray to this point.
+/// Returns the ray of an image point; std::nullopt if the lens's distortion maps no ray to this point.
 [[nodiscard]] std::optional<Ray> ray_at(const Lens& lens, const Eigen::Vector2d& pixel);
 
-/// The rays of all pixels of an image. For a lens without distortion nothing is stored. Otherwise all rays
-/// are stored, and recomputed only after a change of the lens or the image size.
+/// The rays of all pixels of an image. For a lens without distortion, it stores nothing. For other lenses, it
+/// stores all rays, and recomputes them only after a change of the lens or the image size.
 class RayField {
  public:
   /// Sets lens and image size. Throws std::invalid_argument for a size that is not positive or above 65536
   /// px.
   void set(const Lens& lens, int width, int height);
 
-  /// Returns the ray of a pixel; empty if the lens's distortion maps no ray to this pixel.
+  /// Returns the ray of a pixel; std::nullopt if the lens's distortion maps no ray to this pixel.
   [[nodiscard]] std::optional<Ray> ray(int u, int v) const;
   /// Returns the largest distance in (a, b) between the rays of neighbouring pixels.
   [[nodiscard]] double largest_step() const { return largest_step_; }

@@ -12,28 +12,28 @@ namespace flexura {
 
 struct PreparedScene;
 
-/// Draws scenes from their exact geometric description (docs/renderer.md). Memory is reused, so that a second
-/// picture of the same size allocates nothing. Only one thread at a time may use a renderer. The result
-/// depends on scene and view alone, not on earlier pictures.
+/// Draws scenes from their exact geometric description (docs/renderer.md). It reuses memory, so that a second
+/// picture of equal size allocates nothing. Only one thread at a time may use a renderer. The result depends
+/// only on scene and view, not on earlier pictures.
 class Renderer {
  public:
-  /// `path` is the instruction set of the fast path; pictures are the same for all instruction sets.
+  /// `path`: the instruction set of the fast path. Pictures are equal for all instruction sets.
   explicit Renderer(SimdPath path = best_simd_path());
   ~Renderer();
-  /// A renderer that was moved from supports only assignment and destruction.
+  /// After a move, the moved-from renderer supports only assignment and destruction.
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Draws `scene` as seen by `view` into `picture`, which is resized. The fast path (quick_picture.h) draws
+  /// Draws `scene` as seen by `view` into `picture`, which it resizes. The fast path (quick_picture.h) draws
   /// simple parts unless `is_exact`. Throws std::invalid_argument for a scene that check() rejects, a view
   /// that is not finite, or an image without pixels.
   void render(const Scene& scene, const View& view, PixelKind pixels, LightImage& picture,
               bool is_exact = false);
 
   /// Prepares for queries of true values, without drawing. The queries read `scene`, which must remain
-  /// unchanged until the next call. Throws like render().
+  /// unchanged until the next call. Throws the exceptions of render().
   void prepare(const Scene& scene, const View& view);
-  /// Returns the scene that was prepared last, for the functions in truth.h; valid until the next call.
+  /// Returns the last prepared scene, for the functions in truth.h. It is valid until the next call.
   [[nodiscard]] const PreparedScene& prepared() const;
 
  private:

@@ -98,7 +98,7 @@ void check_arm(const ArmLook& arm) {
     const double off = (X_WS.position - at.X_WS.position).norm();
     const double turned = (X_WS.rotation.col(2) - at.X_WS.rotation.col(2)).norm();
     const bool continues = off <= 1e-6 * (1 + before.length) && turned <= 1e-6;
-    if (!continues) refuse("{} does not continue the one before", place().text());
+    if (!continues) refuse("{} does not continue the previous one", place().text());
   }
   for (const MarkerRing& marker : arm.markers) {
     require_color(marker.albedo, {"marker"});
@@ -130,7 +130,8 @@ void check_etalon(const Etalon& etalon) {
   require_color(etalon.line_albedo, {"etalon's lines"});
   const bool has_room_for_lines = etalon.line_width >= 0 && etalon.line_width < 1.5 * etalon.radius;
   if (!has_room_for_lines)
-    refuse("etalon: lines {} wide around a radius of {}", etalon.line_width, etalon.radius);
+    refuse("etalon: lines of width {} do not fit around a cylinder of radius {}", etalon.line_width,
+           etalon.radius);
 }
 
 struct ObstacleChecker {

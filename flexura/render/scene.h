@@ -17,7 +17,7 @@ namespace flexura {
 /// surface (albedo).
 using Color = Eigen::Vector3d;
 
-/// Returns the brightness that a gray sensor sees of a colour: 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R
+/// Returns the brightness of a colour for a gray sensor: 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R
 /// BT.709).
 [[nodiscard]] inline double gray_of(const Color& color) {
   return 0.2126 * color.x() + 0.7152 * color.y() + 0.0722 * color.z();
@@ -38,7 +38,7 @@ struct GuideDisk {
 
 /// Visible properties of the arm. An empty `tube` means that there is no arm.
 struct ArmLook {
-  std::vector<Arc> tube;  ///< Arcs, base first, each starting at the end of the previous arc.
+  std::vector<Arc> tube;  ///< Arcs from base to tip. Each arc starts at the end of the previous one.
   TipKind tip = TipKind::flat;
   Color albedo = {0.16, 0.16, 0.17};
   Color disk_albedo = {0.35, 0.35, 0.37};
@@ -49,7 +49,8 @@ struct ArmLook {
 
 /// A finite white screen that emits light.
 struct Screen {
-  Pose X_WS;  ///< Pose of the screen: origin in the middle, x to the right, z along the front's normal.
+  /// Pose of the screen's frame: origin in the middle, x to the right, z along the front's normal.
+  Pose X_WS;
   std::array<double, 2> size = {2, 2};    ///< Size along x and y, m; > 0.
   Color brightness = {0.85, 0.85, 0.85};  ///< Brightness in the screen's middle.
   std::array<double, 2> gradient = {
@@ -57,10 +58,10 @@ struct Screen {
   double falloff = 0;  ///< Relative loss of brightness in the corners.
 };
 
-/// The calibration cylinder: dark, with red lines parallel to its axis. The lines face +Z of the cylinder's
-/// frame E and every 90 degrees from there.
+/// The calibration cylinder: dark, with red lines parallel to its axis. The lines are at every 90 degrees
+/// around the axis, beginning at +Z of the cylinder's frame E.
 struct Etalon {
-  Pose X_WE;             ///< Pose of the cylinder: origin in the middle, axis along E's +Y.
+  Pose X_WE;             ///< Pose of the cylinder's frame E: origin in the middle, axis along +Y.
   double radius = 0.05;  ///< Radius, m; > 0.
   double height = 0.3;   ///< Height, m; > 0.
   /// Width of a line around the surface, m; >= 0 and less than a quarter of the circumference.
@@ -78,13 +79,13 @@ struct VisibleObstacle {
 /// Light on surfaces. A surface has the brightness albedo * (ambient + directional * max(0, cosine of the
 /// angle between its normal and the light)).
 struct Light {
-  /// Direction towards the light source, in W; any length above 0.
+  /// Direction towards the light source, in W. Its length must be above 0.
   Eigen::Vector3d direction = {0.4, 0.8, 0.45};
   /// Ambient and directional light; 1 is full scale on a white surface.
   double ambient = 0.45, directional = 0.55;
   /// Fraction of the directional light, and of a screen's light, that a shadow removes; 0: no shadows. The
   /// arm casts shadows on all surfaces. Guide disks, the calibration cylinder and obstacles other than planes
-  /// cast shadows on screens and planes only.
+  /// cast shadows only on screens and planes.
   double shadow = 0;
   /// Angular radius of the light source, rad; > 0. A larger source makes softer shadows.
   double angular_radius = 0.05;
@@ -100,10 +101,10 @@ struct Scene {
   Color background = {0.02, 0.02, 0.02};  ///< Light from directions without a surface.
 };
 
-/// Throws std::invalid_argument for an invalid scene; the message names the part and the value. Invalid are
+/// Throws std::invalid_argument for an invalid scene. The message names the part and the value. Errors are
 /// values that are not finite, sizes that are not positive, sizes and positions above 1e9 m, and directions
-/// of length zero. Also invalid are wrong rotation matrices, and tube arcs that do not start at the end of
-/// the previous arc.
+/// of length zero. Further errors are matrices that are not rotations, and tube arcs that do not start at the
+/// end of the previous arc.
 void check(const Scene& scene);
 /// Throws std::invalid_argument for a camera pose that is not finite or not a rigid transform.
 void check_camera(const Pose& X_WC);

@@ -14,13 +14,12 @@ namespace flexura {
 /// Makes the scenes of an experiment from the fixed bodies and the arm's current shape.
 class SceneMaker {
  public:
-  /// Uses the arm with the appearance `look`, and the fixed bodies in `stand` and `obstacles`. If `stand`
-  /// does not set screens, uses the paper's screens. If `stand.arm` is false, the scenes do not contain the
-  /// arm.
+  /// `look`: appearance of the arm. `stand` and `obstacles`: fixed bodies. If `stand` does not set screens,
+  /// uses the paper's screens. If `stand.arm` is false, the scenes do not contain the arm.
   SceneMaker(const Arm& arm, const LookConfig& look, const StandConfig& stand,
              const std::vector<ObstacleConfig>& obstacles);
 
-  /// Returns the scene with the arm along `backbone`. Markers and disks move with the arm's material, so that
+  /// Returns the scene with the arm along `backbone`. Markers and disks move with the arm's material, so
   /// bands on a stretched section are stretched.
   [[nodiscard]] Scene scene(const Backbone& backbone) const;
 

@@ -9,8 +9,8 @@
 
 namespace flexura {
 
-/// Pixels of the reference path that show only screens, as drawn in earlier pictures. They stay the same
-/// while neither camera nor screens change, whatever moves elsewhere. Keeps those of the last few cameras.
+/// Stores pixels of the reference path that show only screens. They can be reused in later pictures as long
+/// as camera and screens do not change. It stores the pixels of the last few cameras.
 class ScreenPixels {
  public:
   /// A pixel: column, row, depth, m, and light of each channel.
@@ -19,11 +19,12 @@ class ScreenPixels {
     float depth = 0, light[3] = {};
   };
 
-  /// Starts a picture. Then find() must be called in the order of rows, and within a row of columns.
+  /// Starts a picture. Afterwards, find() must be called in the order of rows, and within a row in the order
+  /// of columns.
   void begin(const Scene& scene, const View& view, PixelKind pixels);
-  /// Returns the pixel if it is known; null otherwise. Valid until the next call.
+  /// Returns the pixel if it is stored; null otherwise. The pointer is valid until the next call.
   [[nodiscard]] const Pixel* find(int u, int v);
-  /// Adds the pixel that the last find() did not know.
+  /// Stores the pixel that the last find() did not find.
   void add(const Pixel& pixel) { merged_.push_back(pixel); }
   /// Ends the picture.
   void end();

@@ -232,8 +232,8 @@ void Sensor::require_fit(const Image<float>& light, const Image<Value>& image) c
     return one.width() == width_ && one.height() == height_ && one.channels() == channels;
   };
   if (!fits(light) || !fits(image)) {
-    throw std::invalid_argument(fmt::format("the light and the image must have {} x {} pixels of {} values",
-                                            width_, height_, channels));
+    throw std::invalid_argument(fmt::format(
+        "the light and the image must have {} x {} pixels with {} values each", width_, height_, channels));
   }
   if ((config_.bits <= 8) != std::is_same_v<Value, std::uint8_t>)
     throw std::invalid_argument(fmt::format("a sensor of {} bits delivers {}", config_.bits,

@@ -12,23 +12,24 @@
 
 namespace flexura {
 
-/// Identifies the noise of an image. The noise of a pixel value depends on the stream, the pixel and the
-/// channel alone. Equal streams give equal noise; different streams give independent noise.
+/// Identifies the noise of an image. The noise of a pixel value depends only on the stream, the pixel and the
+/// channel. Equal streams give equal noise. Different streams give independent noise.
 struct NoiseStream {
   std::uint64_t seed = 0;    ///< Seed of the run.
   std::uint64_t camera = 0;  ///< Index of the camera.
   std::uint64_t frame = 0;   ///< Number of the frame.
 };
 
-/// Reusable working memory of a sensor, one object per thread. After the first use no more memory is
+/// Reusable working memory of a sensor; each thread needs its own. After the first use, no more memory is
 /// allocated.
 struct SensorRows {
   std::vector<float> left, right;  ///< Light at a row's ends, continued beyond the image's edge.
   std::vector<float>
       conditioned;  ///< Rows after clamping and vignetting: as many as the PSF combines, plus one.
-  std::vector<std::uint8_t> same;  ///< SameAs flags of the blocks of the rows in `conditioned`.
+  std::vector<std::uint8_t> same;  ///< SameAs flags of the blocks in the rows of `conditioned`.
   std::vector<std::uint8_t>
-      age;  ///< For each block, the number of last rows that were equal to the row before.
+      /// For each block, the number of successive rows, up to the last one, that equal the previous row.
+      age;
   /// State of each block of the current row.
   std::vector<std::uint8_t> is_plain, is_even, is_known, is_needed;
   std::vector<BlockWork> work;       ///< Work for each block.
@@ -40,37 +41,37 @@ struct SensorRows {
 
 /// An image sensor, which converts light to pixel values. The steps for each value are, in physical order:
 ///
-/// 1. Light that is negative or NaN counts as 0, and beyond 2^20 as 2^20.
-/// 2. Vignetting: multiplication by 1 - vignetting (r/R)^2, with r the distance from the middle of the image
-///    and R that of the corner pixels.
-/// 3. PSF: convolution with a Gaussian along columns and rows, cut at 3.5 standard deviations. It has unit
-///    sum and exactly the configured variance. Pixels of the image's edge are continued outside. Uniform
-///    areas stay exactly unchanged.
-/// 4. Shot noise: normal with the variance light / full_well (Poisson distribution for many electrons); then
+/// 1. Light that is negative or NaN counts as 0. Light above 2^20 counts as 2^20. 2. Vignetting:
+/// multiplication by 1 - vignetting (r/R)^2. Here r is the distance from the middle of the image, and R is
+/// the distance of the corner pixels. 3. PSF: convolution with a Gaussian along columns and rows, cut at 3.5
+/// standard deviations. The kernel has unit sum and exactly the configured variance. Outside the image, the
+/// pixels of its edge are repeated. Uniform areas remain exactly unchanged. 4. Shot noise: normal with the
+/// variance light / full_well (Poisson distribution for many electrons); then
 ///    multiplication by the gain.
-/// 5. Read noise: normal.
-/// 6. Quantisation: clamping to [0, 1], power 1/gamma, multiplication by 2^bits - 1, rounding half up.
+/// 5. Read noise: normal. 6. Quantisation: clamping to [0, 1], power 1/gamma, multiplication by 2^bits - 1,
+/// rounding half up.
 ///
-/// Noise depends on the stream, the pixel and the channel alone. Hence images are equal for any number of
-/// threads and every instruction set.
+/// Noise depends only on the stream, the pixel and the channel. Hence images are equal for any number of
+/// threads and any instruction set.
 class Sensor {
  public:
   /// Throws std::invalid_argument for a size below 1 or above 2^20, a PSF above 30 px, or bits outside 1 to
-  /// 16. Also throws it for a strength of an effect that is negative or infinite. Further causes are a gain
-  /// or gamma that is not positive, and an instruction set that this processor does not support.
+  /// 16. Also throws it for a negative or infinite strength of an effect, and for a gain or gamma that is not
+  /// positive. It also throws it for an instruction set that the processor does not support.
   explicit Sensor(const SensorConfig& config, SimdPath path = best_simd_path());
 
   [[nodiscard]] const SensorConfig& config() const { return config_; }
 
   /// Computes the image of `light`, which is in units of full scale and has the sensor's size and channels.
-  /// Values are of 8 bits for sensors of up to 8 bits, otherwise of 16 bits. Throws std::invalid_argument for
-  /// another size or type.
+  /// Values have 8 bits for sensors with up to 8 bits, otherwise 16 bits. Throws std::invalid_argument for a
+  /// wrong size or type.
   template <typename Value>
   void read(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
             Image<Value>& image) const;
 
-  /// Computes only the rows [first, last) of the image, for example the part of one thread. The image must
-  /// already have the right size. Throws like read(), and for rows outside the image.
+  /// Computes only the rows [first, last) of the image, for example those of one thread. The image must
+  /// already have the right size. Throws the exceptions of read(), and std::invalid_argument for rows outside
+  /// the image.
   template <typename Value>
   void read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last, SensorRows& rows,
                  Image<Value>& image) const;

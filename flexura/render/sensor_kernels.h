@@ -16,8 +16,8 @@ struct SensorLevels {
   bool is_noisy = false;
 };
 
-/// Key of the noise of one row. The noise of a value depends on this key and the value's position in the row
-/// alone.
+/// Key of the noise of one row. The noise of a value depends only on this key and on the value's position in
+/// the row.
 struct NoiseRow {
   std::uint32_t start = 0, mix = 0;
 };
@@ -37,22 +37,22 @@ enum SameAs : unsigned char { same_as_left = 1, same_as_above = 2 };
 /// Work that a block of a row needs, to avoid recomputing known results.
 enum class BlockWork : unsigned char {
   none,  ///< The block is not needed.
-  copy,  ///< All rows that are blurred into the block are equal, so that one of them is copied.
+  copy,  ///< All rows that are blurred into the block are equal. One of them is copied.
   blur,
 };
 
 /// Functions of one instruction set.
 struct SensorKernels {
   /// Clamps light to [0, largest light], where NaN counts as 0, and multiplies it by 1 - (across + down)
-  /// unless `across` is null. `above` is the result of the previous row. `has_left` tells whether a block
-  /// precedes `to`. Writes the SameAs flags to `same`.
+  /// unless `across` is null. `above` is the result of the previous row. `has_left`: whether a block precedes
+  /// `to`. Writes the SameAs flags to `same`.
   void (*condition)(const SensorRow& row, const float* from, const float* across, float down,
                     const float* above, bool has_left, float* to, unsigned char* same);
   /// Blurs across 2 * radius + 1 rows, of which `rows[radius]` is the middle.
   void (*blur_down)(const SensorRow& row, const float* const* rows, const BlockWork* work, float* to);
-  /// Blurs `light` along the row with the weights, if any, and computes levels, unrounded or truncated to
-  /// integers. If `is_known[block]`, the light of the block and all light that is blurred into it equal those
-  /// of the previous block, and are not read.
+  /// Blurs `light` along the row if there are weights, and computes levels, unrounded or truncated to
+  /// integers. If `is_known[block]`, the result equals that of the previous block, and the block's light is
+  /// not read.
   void (*to_levels)(const SensorRow& row, const float* light, const unsigned char* is_known,
                     const SensorLevels& levels, NoiseRow noise, float* to);
   void (*to_bytes)(const SensorRow& row, const float* light, const unsigned char* is_known,

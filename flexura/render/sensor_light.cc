@@ -37,7 +37,7 @@ void expose(const SensorConfig& sensor, double start, int instants, const DrawLi
 
 void gather_light(const SensorConfig& sensor, double start, int instants, const DrawLight& draw,
                   Image<float>& light, Image<float>& scratch) {
-  if (instants < 1) throw std::invalid_argument("a frame needs at least one instant");
+  if (instants < 1) throw std::invalid_argument("a frame needs at least one time");
   take_size(sensor, light);
   if (instants > 1) take_size(sensor, scratch);
   const int height = light.height();

@@ -7,7 +7,7 @@
 
 namespace flexura {
 
-/// The rows first, first + step, ..., all below last.
+/// The rows first, first + step, ..., below last.
 struct Rows {
   int first = 0, last = 0, step = 1;
 };
@@ -16,11 +16,11 @@ struct Rows {
 /// Other rows remain unchanged.
 using DrawLight = std::function<void(double time, const Rows& rows, Image<float>& light)>;
 
-/// Computes the light of a frame that starts at `start`, s. Each row is the mean over `instants` times within
-/// the row's exposure, in the middle of equal parts of the exposure. If the exposure is 0, the time is its
-/// start. `light` is resized to the sensor's size; `scratch` is used if several times are averaged. For each
-/// time, draws once for a global shutter, twice for interlaced readout, and row by row for a rolling shutter.
-/// Throws std::invalid_argument for instants < 1.
+/// Computes the light of a frame that starts at `start`, s. The light of a row is the mean over `instants`
+/// times in the row's exposure. These times are the middles of equal parts of the exposure. If the exposure
+/// is 0, the only time is its start. `light` is resized to the sensor's size; `scratch` is used if several
+/// times are averaged. For each time, draws once for a global shutter, twice for interlaced readout, and row
+/// by row for a rolling shutter. Throws std::invalid_argument for instants < 1.
 void gather_light(const SensorConfig& sensor, double start, int instants, const DrawLight& draw,
                   Image<float>& light, Image<float>& scratch);
 

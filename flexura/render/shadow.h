@@ -7,13 +7,14 @@
 
 namespace flexura {
 
-/// Adds a straight tube that casts a shadow, with two flat or two round ends, if shadows are on in the scene.
+/// Adds a straight tube that casts a shadow, if the scene has shadows. The tube has two flat or two round
+/// ends.
 void add_caster(const Arc& tube, TipKind ends, const Pose& X_CW, Stage& stage);
 /// Adds a box that casts a shadow. Its centre is the origin of X_CB.
 void add_caster(const Pose& X_CB, const std::array<double, 3>& half_sizes, Stage& stage);
 
-/// Returns the fraction of the directional light that shadows leave at a surface point which faces the light.
-/// Includes shadows of the arm and, if `of_all`, of all other bodies.
+/// Returns the fraction of the directional light that reaches a surface point which faces the light. The
+/// shadows are those of the arm and, if `of_all`, of all other bodies.
 [[nodiscard]] double shadow_at(const Stage& stage, const Eigen::Vector3d& p_CQ, bool of_all);
 
 }  // namespace flexura

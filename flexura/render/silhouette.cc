@@ -212,7 +212,7 @@ class OutlineMaker {
 }  // namespace
 
 std::vector<Outline> outlines(const Renderer& renderer, double step) {
-  if (!(step > 0)) throw std::invalid_argument("the points of an outline need a positive distance");
+  if (!(step > 0)) throw std::invalid_argument("the distance between points of an outline must be positive");
   if (renderer.prepared().stage.scene->arm.tube.empty()) return {};
   return OutlineMaker(renderer, step).make();
 }

@@ -14,8 +14,10 @@ struct OutlinePoint {
   double angle = 0;                  ///< Angle around the backbone from x of the backbone's frame at s, rad.
   Eigen::Vector3d p_CP = {0, 0, 0};  ///< Point in C, m.
   std::optional<Eigen::Vector2d>
-      pixel;  ///< Pixel (u, v), px; empty if the point is behind the camera or outside the lens's field.
-  bool is_visible = false;  ///< Whether nothing, including the arm, is in front of the point.
+      /// Pixel (u, v), px; missing if the point is behind the camera or outside the lens's field of view.
+      pixel;
+  /// Whether the point is visible: neither the arm nor anything else is in front of it.
+  bool is_visible = false;
 };
 
 /// Kind of an outline curve.
@@ -31,11 +33,11 @@ struct Outline {
 };
 
 /// Returns the arm's outline curves as seen by the prepared renderer's camera. Points are about `step` px
-/// apart, with at least 8 and at most 2000 points per arc. The first curves are contours in order of s. Each
+/// apart, with at least 8 and at most 2000 points per arc. The first curves are contours, in order of s. Each
 /// part of the arm whose side can be tangent to rays has two contours, one on each side. If such a part
-/// begins or ends within the arm, its two contours share this point. The next curves are the closed rims of
-/// flat ends, which start at angle 0. A round tip's outline is a contour at s = L. Empty without an arm.
-/// Throws std::invalid_argument for a step that is not positive.
+/// begins or ends within the arm, its two contours share this point. Then the closed rims of flat ends
+/// follow, which start at angle 0. The outline of a round tip is a contour at s = L. The result is empty
+/// without an arm. Throws std::invalid_argument for a step that is not positive.
 [[nodiscard]] std::vector<Outline> outlines(const Renderer& renderer, double step = 1);
 
 }  // namespace flexura

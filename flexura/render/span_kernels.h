@@ -15,13 +15,13 @@ enum PixelState : std::uint8_t {
   state_arm = 1,     ///< Surface of the arm, or an end of the arm.
   state_border =
       2,  ///< Crossed by the arm's contour or, close to the contour, by the curved edge of a ring or line.
-  state_exact = 4,  ///< Left to the reference path.
+  state_exact = 4,  ///< The reference path draws the pixel.
   state_base = 8,   ///< May contain the rim of the arm's base.
   state_tip = 16,   ///< May contain the rim of the arm's tip.
   state_edge = 32,  ///< Crossed by a screen's edge, or by the line where two screens cross.
 };
 
-/// A linear function of the image: value + by_u (u - u0) + by_v (v - v0). For a lens with distortion (u, v)
+/// A linear function of the image: value + by_u (u - u0) + by_v (v - v0). For a lens with distortion, (u, v)
 /// is the undistorted position.
 struct Linear {
   float value, by_u, by_v;
@@ -47,7 +47,7 @@ struct SpanRow {
   bool has_exact = false;        ///< Whether any pixel is left to the reference path.
 };
 
-/// A plane where the tube's colour changes: p . normal = offset in the piece's frame.
+/// A plane at which the tube's colour changes: p . normal = offset in the piece's frame.
 struct SpanEdge {
   float normal[3], offset;
   float far;        ///< Distance beyond which no pixel is divided, m.
@@ -64,14 +64,14 @@ struct SpanPiece {
   /// Curvature, 1/m; radius at the piece's start, m; change of the radius per arc length.
   float curvature, radius, widening;
   float widest;  ///< Largest radius, m.
-  /// Distances along the axis from start and end, m, within which contours are left to the reference path.
-  /// They are above 0 where curvature or taper changes.
+  /// Distances from start and end along the axis, m, within which the reference path draws contours. They are
+  /// above 0 where curvature or taper changes.
   float kink_before, kink_after;
   float end_sine, end_cosine, end_offset;
   float reach;  ///< Distance from the surface within which contours may divide the pixel, m.
   /// Distance inside a contour within which the images of edges of rings and lines are curved, m; >= reach.
   float bent_reach;
-  int centering;       ///< Number of Newton steps to the point of the ray deepest in the tube.
+  int centering;       ///< Number of Newton steps to the point at which the ray is deepest in the tube.
   float largest_move;  ///< Largest allowed length of the last of these steps, m.
   int refining;        ///< Number of Newton steps to the ray's entry into the tube.
   float settled;       ///< Largest allowed length of the last of these steps, m.
@@ -80,8 +80,8 @@ struct SpanPiece {
   float albedo[3];  ///< Albedo at the piece's start.
   const SpanEdge* edges;
   std::size_t edge_count, channels;
-  std::uint8_t rims;  ///< Flags of the arm's ends on this piece (state_base, state_tip); pixels of their rims
-                      ///< are skipped.
+  /// Flags of the arm's ends on this piece (state_base, state_tip). Pixels of their rims are skipped.
+  std::uint8_t rims;
 };
 
 /// A flat end of the arm or of the calibration cylinder. A ray intersects the end's plane at (x, y) / z, in
@@ -115,8 +115,9 @@ struct SpanScreen {
   float u0, v0;
   Linear nearness, place[2];
   float middle[2], gradient[2], falloff, brightness[3];
-  Linear edges[4];       ///< Above 1: well inside the edge; below -1: well outside.
-  float least_distance;  ///< Smallest difference of inverse depth from the present content that is reliable.
+  /// Position relative to each edge. Values above 1 are well inside, values below -1 well outside.
+  Linear edges[4];
+  float least_distance;  ///< Smallest reliable difference of inverse depth from the present content.
   std::size_t channels;
   bool is_plain;  ///< Whether the screen's light is uniform.
 };
@@ -143,8 +144,8 @@ struct SpanKernels {
   /// Draws the piece's surface in the columns [begin, end) where the piece is nearest and no contour is near.
   void (*draw)(const SpanPiece& piece, int begin, int end, SpanRow& row);
   /// Draws the screen in the columns [begin, end) where the screen is nearest and none of its edges is near.
-  /// `is_first` means that the row is empty. Without distortion its content is then ignored, except for a
-  /// plain screen's light.
+  /// `is_first` means that the row is empty. Without distortion, its content is then ignored, except for the
+  /// light of a screen with uniform light.
   void (*screen)(const SpanScreen& screen, int begin, int end, bool is_first, SpanRow& row);
   /// Appends the columns that may contain the rim to row.borders.
   void (*find_rim)(const SpanRim& rim, int begin, int end, SpanRow& row);

@@ -25,10 +25,10 @@ struct Body {
 };
 
 struct DiscPart {
-  Circle circle;  ///< Rim of the disc; the normal points out of the body.
+  Circle circle;  ///< Rim of the disc. The normal points out of the body.
   int body = 0;
-  std::size_t tube_arc = 0;  ///< On the arm: index of the arc with the disc.
-  double along = 0;          ///< On the arm: distance of the disc from the start of this arc, m.
+  std::size_t tube_arc = 0;  ///< For the arm: index of the arc with the disc.
+  double along = 0;          ///< For the arm: distance of the disc from the start of this arc, m.
   int arm_piece = -1;        ///< Piece of the arm that begins at the disc; -1: no piece.
 };
 struct FacePart {
@@ -37,7 +37,7 @@ struct FacePart {
   int screen = -1;
 };
 struct PlanePart {
-  Eigen::Vector3d point, normal;  ///< A point of the plane, in C; unit normal out of the body.
+  Eigen::Vector3d point, normal;  ///< A point of the plane, and the unit normal out of the body, both in C.
   int body = 0;
 };
 
@@ -48,15 +48,15 @@ struct RingEdge {
   bool is_disk = false;
 };
 
-/// Marker that the arm's surface shows from the arc length s, m, on: an index in the scene, or -1 for no
-/// marker.
+/// Marker on the arm's surface from the arc length s, m, to the next stretch: an index in the scene, or -1
+/// for no marker.
 struct RingStretch {
   double s = 0;
   int marker = -1;
 };
 
-/// A convex body other than the arm that casts a shadow. Seen from the light, the body is the intersection of
-/// half planes; this is the line that bounds one of them.
+/// A side of a convex body, other than the arm, that casts a shadow. Seen from the light, the body is the
+/// intersection of half planes. A side is the line that bounds one of them.
 struct CasterSide {
   Eigen::Vector3d normal;  ///< Outward unit normal in C, perpendicular to the light and the line.
   double reach = 0;        ///< Distance of the body's center from the line, m.
@@ -72,7 +72,7 @@ struct LineEdge {
   double angle = 0;          ///< Angle around the calibration cylinder's +Y from its +Z, rad in (-pi, pi].
 };
 
-/// A scene in one camera's frame C, as primitives for intersection with rays. Memory is reused from frame to
+/// A scene in one camera's frame C, as primitives for intersection with rays. It reuses memory from frame to
 /// frame.
 struct Stage {
   std::vector<Body> bodies;
@@ -104,8 +104,8 @@ struct TubeEnd {
   int body = 0;  ///< Body to which a flat end's disc belongs.
 };
 
-/// Adds the pieces and ends of a tube. Where the radius jumps between arcs, a disc of `step_body` closes the
-/// wider arc.
+/// Adds the pieces and ends of a tube. Where the radius jumps between arcs, a disc that belongs to
+/// `step_body` closes the wider arc.
 void add_tube(std::span<const Arc> arcs, const Pose& X_CW, int body, int step_body,
               const std::array<TubeEnd, 2>& ends, Stage& stage);
 

@@ -7,9 +7,9 @@ namespace flexura {
 /// Kind of the surface that a pixel shows.
 enum class SurfaceKind : std::uint8_t {
   background,
-  section,  ///< The arm's surface; the index is that of the section.
+  section,  ///< The arm's surface. The index is that of the section.
   cap,      ///< A flat end of the arm; index 0 at the base, 1 at the tip, 2 where the radius jumps.
-  marker,   ///< A marker ring; the index is that in the scene's list.
+  marker,   ///< A marker ring. The index is that in the scene's list.
   disk,     ///< A guide disk.
   screen,
   etalon,       ///< The calibration cylinder; index 0: its side; 1, 2: its ends at +Y and -Y.

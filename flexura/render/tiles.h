@@ -10,13 +10,13 @@
 
 namespace flexura {
 
-/// Lists, for each tile of 16 x 16 px, the primitives that may be visible or have a border there. A list is
-/// made when it is first needed.
+/// Lists, for each tile of 16 x 16 px, the primitives that may be visible or have a border there. Each list
+/// is computed when it is first needed.
 class Tiles {
  public:
   static constexpr int size = 16;
 
-  /// Starts a new frame. Memory is reused. `stage` and `rays` must outlive the queries.
+  /// Starts a new frame and reuses memory. `stage` and `rays` must outlive the queries.
   void build(const Stage& stage, const RayField& rays);
 
   [[nodiscard]] int columns() const { return columns_; }

@@ -38,7 +38,8 @@ struct Hit {
 /// lines where bodies intersect.
 struct Trace {
   Hit hit;
-  Border nearest, second;  ///< Nearest and second nearest border; infinitely far if beyond border_reach.
+  /// Nearest and second nearest border. Borders farther than border_reach have an infinite distance.
+  Border nearest, second;
   /// Distance of the nearest border that is not an edge of a ring, px.
   double clear = std::numeric_limits<double>::infinity();
 };
@@ -66,7 +67,8 @@ class Tracer {
 /// Returns the label of the arm's surface at arc length s, m, on `piece`: a marker or the section.
 [[nodiscard]] SurfaceLabel arm_label(const Stage& stage, const TubePiece& piece, double s);
 
-/// Returns the light that the ray gets from the surface point `hit`, or from the background.
+/// Returns the light that reaches the camera along the ray from the surface point `hit`, or from the
+/// background.
 [[nodiscard]] Color light_of(const Stage& stage, const Hit& hit, const Ray& ray);
 
 }  // namespace flexura

@@ -17,7 +17,7 @@ namespace flexura {
 // True values of a picture, computed from geometry, without sensor effects. Each function queries a renderer
 // that is prepared for a scene and a view (Renderer::prepare).
 
-/// Returns a label as one number: 4096 times the value of SurfaceKind, plus the index.
+/// Returns a label as one number: 4096 times the value of the SurfaceKind, plus the index.
 [[nodiscard]] std::uint16_t label_value(SurfaceLabel label);
 /// Returns the label for a number from label_value().
 [[nodiscard]] SurfaceLabel label_from_value(std::uint16_t value);
@@ -42,8 +42,8 @@ struct TruthMaps {
 /// Computes `maps`, resized to the view's image.
 void truth_maps(const Renderer& renderer, TruthMaps& maps);
 
-/// Returns the fraction of each pixel's square that shows surfaces of `kind`, from 0 to 1. With an index,
-/// only the surface with this index counts. The image has one channel and the view's size.
+/// Returns the fraction of each pixel's square that shows surfaces of `kind`, from 0 to 1. If an index is
+/// given, only the surface with this index counts. The image has one channel and the view's size.
 [[nodiscard]] Image<float> coverage(const Renderer& renderer, SurfaceKind kind,
                                     std::optional<std::uint16_t> index = std::nullopt);
 
@@ -51,13 +51,14 @@ void truth_maps(const Renderer& renderer, TruthMaps& maps);
 struct AxisPoint {
   double s = 0;  ///< Arc length from the base, m.
   std::optional<Eigen::Vector2d>
-      pixel;  ///< Pixel (u, v), px; empty if the point is behind the camera or outside the lens's field.
+      /// Pixel (u, v), px; missing if the point is behind the camera or outside the lens's field of view.
+      pixel;
   double depth = 0;  ///< Depth along the optical axis, m; negative behind the camera.
-  /// Whether the camera sees the arm's surface in front of the point. The line from camera to point then
-  /// enters the arm exactly once, and hits nothing else before.
+  /// Whether the camera sees the arm's surface in front of the point. In this case, the line from camera to
+  /// point enters the arm exactly once, and hits nothing else before.
   bool is_visible = false;
 };
-/// Returns the backbone points at arc lengths `s`, m, clamped to the arm. Empty without an arm.
+/// Returns the backbone points at arc lengths `s`, m, clamped to the arm. The result is empty without an arm.
 [[nodiscard]] std::vector<AxisPoint> projected_axis(const Renderer& renderer, std::span<const double> s);
 
 /// A marker ring as seen in the image.
@@ -70,12 +71,12 @@ struct MarkerView {
 [[nodiscard]] std::vector<MarkerView> marker_views(const Renderer& renderer);
 
 /// Returns the optical flow in two channels (u, v), px: the image motion of the surface point in the middle
-/// of each pixel. The motion is from the prepared scene and view to the given scene and view. NaN for the
-/// background, and for points that leave the lens's field. Points of the arm keep their section, their
-/// fraction of its length, and their position in the cross-section. Points of screens and of the calibration
-/// cylinder move with these bodies; obstacles are fixed. Points need not be visible in the second view.
-/// Throws std::invalid_argument for a scene that check() rejects, or that has other numbers of tube arcs,
-/// disks or screens. Also throws it if only one of the scenes has the cylinder.
+/// of each pixel. The motion is from the prepared scene and view to the given scene and view. It is NaN for
+/// the background, and for points that leave the lens's field of view. Points of the arm keep their section,
+/// their fraction of the section's length, and their position in the cross-section. Points of screens and of
+/// the calibration cylinder move with these bodies. Obstacles are fixed. Points need not be visible in the
+/// second view. Throws std::invalid_argument for a scene that check() rejects. Also throws it if the numbers
+/// of tube arcs, disks or screens of the two scenes differ, and if only one of the scenes has the cylinder.
 [[nodiscard]] Image<float> optical_flow(const Renderer& renderer, const Scene& scene, const View& view);
 
 }  // namespace flexura

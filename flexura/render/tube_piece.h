@@ -16,7 +16,7 @@ namespace flexura {
 ///
 /// The piece's frame P has its origin at the start of the centerline, z along the tangent, and x towards the
 /// centre of curvature. The piece's part of space is between the planes perpendicular to the centerline at
-/// both ends. The space beyond belongs to the neighbouring pieces.
+/// both ends. The space beyond these planes belongs to the neighbouring pieces.
 struct TubePiece {
   Eigen::Matrix3d R_CP = Eigen::Matrix3d::Identity();
   Eigen::Vector3d p_CP = Eigen::Vector3d::Zero();  ///< Start of the centerline, in C, m.
@@ -25,7 +25,7 @@ struct TubePiece {
   double radius = 0, widening = 0;  ///< Radius at the start, m, and change of the radius per arc length.
   double s = 0;                     ///< Arc length of the piece's start on the whole tube, m.
   bool is_ball = false;  ///< Whether the piece is a ball of `radius` around the origin of P instead.
-  /// Whether the plane at the start, or at the end, cuts the piece (never for a ball).
+  /// Whether the plane at the start, or the plane at the end, cuts the piece; both are false for a ball.
   bool is_cut_before = true, is_cut_after = true;
   Eigen::Vector3d end_tangent = {0, 0, 1};  ///< Unit tangent at the end, in P.
   double end_offset = 0;                    ///< Offset of the end's plane along end_tangent, m.
@@ -63,7 +63,8 @@ struct LocalRay {
 /// The part of a ray between two depths.
 struct DepthRange {
   double from = 0, to = 0;
-  /// Whether the ray leaves the piece's part of space at `to` through the plane at the start, or at the end.
+  /// Whether the ray leaves the piece's part of space at `to` through the plane at the start, or through the
+  /// plane at the end.
   bool leaves_before = false, leaves_after = false;
   [[nodiscard]] bool is_empty() const { return !(from < to); }
 };
@@ -81,11 +82,11 @@ struct Inside {
 /// Relation of a point in C to a piece near the point.
 struct TubePoint {
   double s = 0;  ///< Arc length of the nearest point of the centerline, from the start of the whole tube, m.
-  double gap = 0;          ///< Signed distance from the surface within the cross-section, m; negative inside.
-  Eigen::Vector3d normal;  ///< Unit normal of the surface of equal gap, in C.
+  double gap = 0;  ///< Signed distance from the surface, measured in the cross-section, m; negative inside.
+  Eigen::Vector3d normal;   ///< Unit normal of the surface of equal gap, in C.
   Eigen::Vector3d outward;  ///< Unit direction from the centerline to the point, in C.
   Eigen::Vector3d tangent;  ///< Unit tangent of the centerline, in C.
-  /// 1 - curvature * distance towards the centre of curvature: length at the point per arc length.
+  /// Length at the point per arc length: 1 - curvature * distance towards the centre of curvature.
   double shrink = 1;
 };
 [[nodiscard]] TubePoint tube_point(const TubePiece& piece, const Eigen::Vector3d& p_CQ);
@@ -96,18 +97,18 @@ struct NearMisses {
   std::array<double, 2> depths = {0, 0};
   int count = 0;
 };
-/// Returns the depth in the range at which the ray first enters the piece; infinity if the ray does not
-/// enter. Adds the near misses before this depth to `misses`.
+/// Returns the depth in the range at which the ray first enters the piece; infinity if the ray does not enter
+/// the piece. Adds the near misses before this depth to `misses`.
 [[nodiscard]] double first_entry(const TubePiece& piece, const LocalRay& ray, const DepthRange& range,
                                  NearMisses& misses);
 
-/// Returns the first depth in the range at which a ray is deepest in the piece. The ray must be inside at
-/// `depth` and move inwards. Infinity if the ray still moves inwards at the end of the range.
+/// Returns the first depth in the range at which a ray is deepest in the piece. At `depth`, the ray must be
+/// inside and move inwards. Returns infinity if the ray still moves inwards at the end of the range.
 [[nodiscard]] double first_minimum(const TubePiece& piece, const LocalRay& ray, double depth,
                                    const DepthRange& range);
 
-/// Like first_minimum(), but also returns a depth at which the ray's inward motion is slowest and then
-/// becomes faster again. A small step in the image can open a gap at such a depth. `has_entered` means that
+/// Returns the depth of first_minimum(), or an earlier depth at which the ray's inward motion is slowest
+/// before it becomes faster again. At such a depth, a small step in the image can open a gap. `has_entered`:
 /// `depth` is in the previous piece.
 [[nodiscard]] double first_slowdown(const TubePiece& piece, const LocalRay& ray, double depth,
                                     const DepthRange& range, bool has_entered);

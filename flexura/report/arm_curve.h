@@ -18,12 +18,12 @@ enum class PlotView : std::uint8_t { xoy, zoy };
 /// Returns the coordinates of a point of W in a view, m.
 [[nodiscard]] Eigen::Vector2d seen(PlotView view, const Eigen::Vector3d& p_W);
 
-/// Returns true if the arm bends in a plane parallel to XOY, so that the first view shows its true shape.
+/// Returns true if the arm bends in a plane parallel to XOY. Then the first view shows the arm's true shape.
 [[nodiscard]] bool lies_in_xoy(const Arm& arm);
 
 /// Returns the page points of an arc in a view. The points are displaced to the left of the arc's direction
-/// by an offset that changes from aside[0] to aside[1] (page units). They are precise to a tenth of a page
-/// unit for arcs that fit a page.
+/// by an offset that changes from aside[0] to aside[1] (page units). For arcs that fit a page, they are
+/// accurate to 0.1 page units.
 [[nodiscard]] std::vector<Eigen::Vector2d> arc_points(const Arc& arc, PlotView view, const PlotFrame& frame,
                                                       std::array<double, 2> aside = {});
 

@@ -15,7 +15,7 @@ namespace flexura {
                                   std::string_view when);
 
 /// Returns a drawing of two shapes of one arm among obstacles. `shape` is drawn as the arm, and `ghost` as a
-/// line behind it.
+/// line behind the arm.
 [[nodiscard]] Drawing two_shapes_picture(const Arm& arm, const std::vector<ObstacleConfig>& obstacles,
                                          const Backbone& shape, const Backbone& ghost,
                                          std::string_view heading);

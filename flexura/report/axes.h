@@ -22,12 +22,12 @@ struct Interval {
 inline constexpr double heading_space = 34.0;  ///< Space above a plot for its heading, page units.
 inline constexpr double tallest_plot = 430.0;  ///< Largest height of a plot, page units.
 
-/// Returns the range enlarged about its middle to an extent of at least `extent`.
+/// Returns `range`, enlarged about its middle to an extent of at least `extent`.
 [[nodiscard]] Interval grown_to(Interval range, double extent);
 
-/// Returns the range enlarged about its middle to an extent of at least `least`. It is then enlarged at each
-/// end by the share `margin` of that extent. The result's extent is > 0. An extent below the resolution of
-/// the range's numbers counts as zero.
+/// Returns `range`, enlarged about its middle to an extent of at least `least`, and then at each end by the
+/// share `margin` of this extent. The result's extent is > 0. An extent below the resolution of the range's
+/// numbers counts as zero.
 [[nodiscard]] Interval padded(Interval range, double least, double margin);
 
 /// Ticks of an axis.
@@ -39,19 +39,19 @@ struct Ticks {
 /// Returns ticks for a range of positive extent: at most `most` (>= 2), and as many as possible.
 [[nodiscard]] Ticks nice_ticks(Interval range, int most);
 
-/// Returns ticks for a range of exponents of ten, whose labels are the powers: "0.01". They are at whole
-/// exponents if the range has two.
+/// Returns ticks for a range of exponents of ten, whose labels are the powers: "0.01". The ticks are at whole
+/// exponents if the range contains at least two of them.
 [[nodiscard]] Ticks power_ticks(Interval range, int most);
 
-/// Position of a plot on the page and its range of data. The y of data increases upwards unless y_down is
-/// set; the y of the page increases downwards.
+/// Position of a plot on the page and its range of data. The y of data increases upwards unless `y_down` is
+/// set. The y of the page increases downwards.
 struct PlotFrame {
   Interval x;
   Interval y;
   Eigen::Vector2d corner;  ///< Top left corner of the plot, page units.
   Eigen::Vector2d size;    ///< Width and height of the plot, page units.
   bool y_down = false;     ///< Whether the y of data increases downwards.
-  bool y_log = false;      ///< Whether the y of data are exponents of ten; the axis then shows the powers.
+  bool y_log = false;      ///< Whether the y of data are exponents of ten. The axis then shows the powers.
 
   [[nodiscard]] Eigen::Vector2d scale() const { return {size.x() / x.extent(), size.y() / y.extent()}; }
   /// Returns the page point of a data point.
@@ -64,7 +64,7 @@ struct PlotFrame {
 inline constexpr double space_below_axes = 44.0;
 
 /// Returns the width of the axis to the left of a plot, page units. `height`: height of the plot, page units.
-/// `y`: range of its data. `y_log`: see PlotFrame.
+/// `y`: range of the plot's data. `y_log`: PlotFrame::y_log.
 [[nodiscard]] double left_of_axes(Interval y, double height, bool y_log = false);
 
 /// Draws the plot's border, grid, ticks and the names of its axes.
@@ -83,8 +83,8 @@ struct LegendEntry {
   std::string css_class;
 };
 
-/// Draws a legend in rows from the page point `corner` (top left), and no further right than `right`. It
-/// consists of a title, which may be empty, and the entries. Returns the legend's height, page units.
+/// Draws a legend in rows from the page point `corner` (top left), and not beyond `right`. It consists of a
+/// title, which may be empty, and the entries. Returns the legend's height, page units.
 double draw_legend(XmlWriter& svg, const std::string& title, const std::vector<LegendEntry>& entries,
                    const Eigen::Vector2d& corner, double right);
 

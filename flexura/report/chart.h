@@ -19,21 +19,21 @@ struct ChartSeries {
       {};  ///< Style class for colour and dash; empty: chosen by the position in the chart.
 };
 
-/// A chart of values over time or another variable. It is a plot in the page, and a picture if it is written
-/// as a file.
+/// A chart of values over time or another variable. In the page, it is an interactive plot. As a file, it is
+/// a picture.
 struct LineChart {
   std::string heading;      ///< Heading, such as "bend of each section".
   std::string x_label;      ///< Name of the x axis, such as "t (s)".
   std::string value_label;  ///< Name of the value axis, such as "bend_x (deg)".
-  double least = 1.0;       ///< Least extent of the value axis, so that small noise does not fill the chart.
+  double least = 1.0;  ///< Smallest extent of the value axis. It prevents small noise from filling the chart.
   std::vector<double> x = {};  ///< Values of x, increasing; at least one.
   std::vector<ChartSeries> series = {};
   std::string legend =
       {};  ///< Name of the variable that distinguishes the series, such as "section"; may be empty.
   bool is_of_run =
-      false;  ///< Whether x are times of the run; the page's player then marks its time in the chart.
+      false;  ///< Whether x are times of the run. The page's player then marks its time in the chart.
   std::vector<double> marks = {};  ///< Positions of fine vertical lines.
-  bool is_log = false;  ///< Whether values are exponents of ten; a logarithmic axis then shows the powers.
+  bool is_log = false;  ///< Whether values are exponents of ten. A logarithmic axis then shows the powers.
 
   /// Returns the label of the value axis, which states whether the axis is logarithmic.
   [[nodiscard]] std::string axis_label() const { return value_label + (is_log ? ", log scale" : ""); }

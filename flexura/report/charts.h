@@ -7,7 +7,7 @@
 
 namespace flexura {
 
-/// Largest number of sections in a chart; further sections are left out.
+/// Largest number of sections in a chart. Further sections are omitted.
 inline constexpr std::size_t max_series = 32;
 
 /// Returns the charts of a report over time: bends, archings and cord angles (of an arm in XOY), stretches

@@ -40,13 +40,14 @@ std::vector<std::size_t> evenly(std::size_t count, std::size_t most) {
 
 void require_usable(const ReportData& data) {
   if (data.times.empty() || data.times.size() != data.states.size()) {
-    throw std::invalid_argument(
-        fmt::format("a report needs one time for each of at least one state, not {} and {}",
-                    data.times.size(), data.states.size()));
+    throw std::invalid_argument(fmt::format(
+        "a report needs at least one state and one time per state: there are {} times and {} states",
+        data.times.size(), data.states.size()));
   }
   for (std::size_t i = 0; i < data.times.size(); ++i) {
     if (!std::isfinite(data.times[i]) || (i > 0 && data.times[i] < data.times[i - 1])) {
-      throw std::invalid_argument(fmt::format("time {} of a report is {}: not ascending", i, data.times[i]));
+      throw std::invalid_argument(
+          fmt::format("time {} of a report is {}: expected increasing times", i, data.times[i]));
     }
   }
 }

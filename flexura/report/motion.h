@@ -18,14 +18,14 @@ inline constexpr std::size_t max_shown_numbers = 200'000;
 
 /// Returns increasing indices of at most `most` (>= 2) of the increasing `times`. They include the first and
 /// the last time, and the times nearest to those in `desired`. If `desired` has more than most / 2 times,
-/// only evenly chosen ones of these are included. The other indices are evenly spaced.
+/// only an even selection of these is included. The other indices are evenly spaced.
 [[nodiscard]] std::vector<std::size_t> kept_indices(const std::vector<double>& times,
                                                     const std::vector<double>& desired, std::size_t most);
 
-/// Violations shown in one drawing, at the moment when they are worst.
+/// Violations that one drawing shows, at the time when they are worst.
 struct UnsafeMoment {
   std::vector<std::size_t> violations;  ///< Indices in ReportMotion::violations.
-  std::size_t state = 0;                ///< Index of the state nearest to that moment.
+  std::size_t state = 0;                ///< Index of the state nearest to this time.
 };
 
 /// The part of a run that its report shows.
@@ -42,7 +42,7 @@ struct ReportMotion {
   std::vector<UnsafeMoment> unsafe_moments;
   std::vector<ReportData::Safety::Violation> violations;
   std::vector<ObstacleConfig> obstacles;
-  CurveKind curve = CurveKind::arcs;  ///< See ReportData::curve.
+  CurveKind curve = CurveKind::arcs;  ///< Curve that is drawn along the arm (ReportData::curve).
   double tension = 0.5;
   bool in_plane = false;          ///< Whether the arm moves in a plane parallel to XOY.
   bool stretches_change = false;  ///< Whether any stretch differs from 1 at any time.
@@ -53,17 +53,17 @@ struct ReportMotion {
   [[nodiscard]] bool is_unsafe(std::size_t section, std::size_t i) const;
   [[nodiscard]] std::size_t end() const { return times.size() - 1; }
   [[nodiscard]] const Eigen::Vector3d& tip(std::size_t i) const { return backbones[i].tip().position; }
-  /// Returns true if cord angles are relative to W's +X, as in the paper. That is the case for an arm in XOY
-  /// whose archings are counter-clockwise as seen by camera 1.
+  /// Returns true if cord angles are relative to W's +X, as in the paper. This is the case for an arm in XOY
+  /// whose archings are counter-clockwise seen from camera 1.
   [[nodiscard]] bool has_cord_angles() const { return in_plane && arm.X_WB.rotation(2, 1) < 0.0; }
-  /// Returns 2 if the tip moves in XOY itself, otherwise 3.
+  /// Returns 2 if the tip moves in the plane XOY (Z = 0), otherwise 3.
   [[nodiscard]] int tip_coordinates() const;
   /// Returns the tip's position in state i as a text with tip_coordinates() coordinates, m: "E(-10.738,
   /// 5.201)".
   [[nodiscard]] std::string tip_text(std::size_t i) const;
 };
 
-/// Checks the data and thins the states. Throws std::invalid_argument if the data are invalid.
+/// Checks the data and reduces the number of states. Throws std::invalid_argument if the data are invalid.
 [[nodiscard]] ReportMotion motion_of(const ReportData& data);
 
 }  // namespace flexura

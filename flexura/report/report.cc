@@ -93,8 +93,9 @@ std::string events_html(const ReportData& data, bool has_player) {
   }
   html += "</tbody>\n</table>\n</div>\n";
   if (data.events.size() > max_listed_events) {
-    html += fmt::format("<p class=\"note\">The first {} of {} events; the log has all of them.</p>\n",
-                        max_listed_events, data.events.size());
+    html +=
+        fmt::format("<p class=\"note\">These are the first {} of {} events. The log has all events.</p>\n",
+                    max_listed_events, data.events.size());
   }
   return html;
 }
@@ -113,7 +114,7 @@ std::string safety_html(const ReportData& data, bool has_player) {
   const auto& [violations, lines, remarks] = *data.safety;
   std::string html =
       "<section aria-labelledby=\"safety-title\" class=\"safety\">\n<h2 id=\"safety-title\">Safety</h2>\n";
-  if (violations.empty()) html += "<p>The motion keeps to its limits and touches nothing.</p>\n";
+  if (violations.empty()) html += "<p>The motion is within its limits and touches nothing.</p>\n";
   if (!violations.empty() || !remarks.empty()) html += "<ul>\n";
   for (std::size_t i = 0; i < std::min(lines.size(), max_listed_events); ++i) {
     html += fmt::format("<li>{} <span class=\"unsafe\">unsafe:</span> {}</li>\n",
@@ -239,8 +240,8 @@ std::string charts_html(const ReportMotion& motion) {
 std::string thinned_html(const ReportMotion& motion) {
   if (motion.count() == motion.recorded) return "";
   return fmt::format(
-      "<p class=\"note\">This page shows {} of the {} recorded states, evenly chosen and with those at "
-      "events; the log has all of them.</p>\n",
+      "<p class=\"note\">This page shows {} of the {} recorded states: an even selection and the states at "
+      "events. The log has all states.</p>\n",
       motion.count(), motion.recorded);
 }
 
@@ -248,14 +249,14 @@ std::string curve_html(const ReportMotion& motion) {
   if (motion.curve == CurveKind::arcs) return "";
   const std::string name =
       motion.curve == CurveKind::bezier
-          ? "one Bezier curve a section with exact tangents"
+          ? "one Bezier curve per section, with exact tangents"
           : fmt::format("the Catmull-Rom spline through the sections' base points, tension {:.3g}",
                         motion.tension);
   const Backbone& backbone = motion.backbones.back();
   const CurveDeviation end = deviation(drawn_curve(backbone, motion.curve, motion.tension), backbone);
   return fmt::format(
-      "<p class=\"note\">The dark line is {}; at the end it is at most {:.2g} m from the arm's arcs and "
-      "{:.2g} % {} than they.</p>\n",
+      "<p class=\"note\">The dark line is {}; at the end, its distance from the arm's arcs is at most {:.2g} "
+      "m, and it is {:.2g} % {} than the arcs.</p>\n",
       name, end.distance, 100 * std::abs(end.length / backbone.length() - 1),
       end.length < backbone.length() ? "shorter" : "longer");
 }

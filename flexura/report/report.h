@@ -21,7 +21,7 @@ struct ChapterTable {
   std::vector<std::vector<std::string>> rows;  ///< Rows with a cell per column.
 };
 
-/// A part of a report about something other than the arm's motion.
+/// A part of a report on a subject other than the arm's motion.
 struct Chapter {
   std::string heading;                ///< Any text.
   std::string text;                   ///< Paragraph; any text.
@@ -29,7 +29,7 @@ struct Chapter {
   std::vector<std::string> points = {};    ///< List below the paragraph; any texts.
   bool is_first_tall = true;               ///< Whether the first figure is as high as two figures.
   std::optional<ChapterTable> table = {};  ///< Table between the paragraph and the list.
-  /// A collapsed list below the list `points`; shown if it has items.
+  /// A collapsed list below the list `points`. It is shown if it has items.
   struct Details {
     std::string heading;
     std::vector<std::string> points;
@@ -39,7 +39,7 @@ struct Chapter {
 
 /// Data of a finished run for its report.
 struct ReportData {
-  /// A mark in time: the start or end of a task, or an event.
+  /// A marked time: the start or end of a task, or an event.
   struct Mark {
     double time = 0.0;  ///< In s.
     std::string kind;
@@ -54,11 +54,12 @@ struct ReportData {
       std::vector<std::size_t>
           sections;      ///< Indices of sections that are marked with a warning during that time.
       std::string text;  ///< Text beside the drawing of the violation.
-      /// Time at which the violation has a separate drawing, s; it should be one of the report's times.
+      /// If the violation has a separate drawing: the time of the drawing, s. It should be one of the
+      /// report's times.
       std::optional<double> pictured_at = {};
-      std::optional<Eigen::Vector3d> target = {};  ///< Target of the tip in W, m, which is also drawn.
+      std::optional<Eigen::Vector3d> target = {};  ///< Target of the tip in W, m. It is drawn too.
     };
-    /// An entry of the list, for one violation or for all violations of a kind.
+    /// A line of the list, for one violation or for a group of violations.
     struct Line {
       double start = 0.0;  ///< In s.
       std::string text;
@@ -72,12 +73,12 @@ struct ReportData {
   struct Outcome {
     std::string task;        ///< Name of the task; any text.
     std::string text;        ///< Result in one line; any text.
-    bool is_reached = true;  ///< Whether the task reached its aim; if not, the line is marked.
+    bool is_reached = true;  ///< Whether the task was successful. Otherwise the line is marked.
   };
 
   std::string title;            ///< Any text.
-  std::string condition = {};   ///< "done", "unsafe" or "failed", shown as a badge; "": none.
-  std::string reason = {};      ///< Why the run is not done; any text.
+  std::string condition = {};   ///< "done", "unsafe" or "failed", shown as a badge; "": no badge.
+  std::string reason = {};      ///< Reason why the condition is not "done"; any text.
   std::string version;          ///< Version of Flexura.
   std::string experiment_text;  ///< Text of the experiment file that was run, shown unchanged.
   Arm arm;
@@ -87,7 +88,7 @@ struct ReportData {
   std::vector<Mark> events;            ///< Events in the order of time.
   std::size_t recorded =
       0;  ///< Number of states in the run's log, if it is larger than the number of given states.
-  std::optional<Safety> safety;  ///< Violations and contacts; missing: not checked and not shown.
+  std::optional<Safety> safety;  ///< Violations and contacts; missing: the motion was not checked.
   std::vector<ObstacleConfig> obstacles;
   CurveKind curve =
       CurveKind::arcs;   ///< Curve that is drawn as a line along the arm; the arm itself is drawn as arcs.
@@ -96,7 +97,7 @@ struct ReportData {
   std::string headline = {};  ///< Result of the run, below the title; any text; "": not shown.
   std::vector<Outcome> outcomes =
       {};                  ///< Results of the tasks, listed below `headline` if there are several.
-  ReportSpace space = {};  ///< What the 3D view shows beside the arm.
+  ReportSpace space = {};  ///< Objects that the 3D view shows in addition to the arm.
 };
 
 /// A picture as a file.
@@ -105,9 +106,9 @@ struct FigureFile {
   std::string svg;        ///< Text of the file.
 };
 
-/// Returns the whole report as one HTML page. It loads no other files, which its content security policy
-/// enforces. For a long run the page has only about 2000 states, and states this. Throws
-/// std::invalid_argument if times and states do not match or do not fit the arm.
+/// Returns the whole report as one HTML page. It loads no other files; its content security policy enforces
+/// this. For a long run, the page has only about 2000 states and mentions this. Throws std::invalid_argument
+/// if times and states do not match or do not fit the arm.
 [[nodiscard]] std::string report_html(const ReportData& data);
 
 /// Returns the report's pictures and charts, for papers. All runs have arm-start, arm-middle, arm-end,

@@ -10,10 +10,10 @@
 
 namespace flexura {
 
-/// Plots of the views side by side, all with the same scale along both axes.
+/// Plots of the views side by side. All axes have equal scales.
 struct PlotScene {
   std::vector<PlotView> views;
-  std::vector<PlotFrame> frames;  ///< One per view.
+  std::vector<PlotFrame> frames;  ///< Plots, one per view.
   double width = 0.0;   ///< Width of the whole picture with room for axes and a heading, page units.
   double height = 0.0;  ///< Height of the whole picture, page units.
 

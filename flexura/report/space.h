@@ -11,9 +11,9 @@
 
 namespace flexura {
 
-/// What the report's 3D view shows beside the commanded arm and the obstacles.
+/// Objects that the report's 3D view shows in addition to the commanded arm and the obstacles.
 struct ReportSpace {
-  /// Where a camera is from a time on.
+  /// Pose of a camera from a time on.
   struct CameraView {
     double time = 0;  ///< In s.
     Pose X_WC;        ///< Pose of the camera's frame; z is the optical axis.
@@ -22,9 +22,9 @@ struct ReportSpace {
   };
   struct Camera {
     std::string name;               ///< Any text.
-    std::vector<CameraView> views;  ///< In the order of time; at least one.
+    std::vector<CameraView> views;  ///< At least one view, in the order of time.
   };
-  /// What a task aims at.
+  /// Target of a task.
   struct Target {
     std::string name;                              ///< Name of the task; any text.
     double start = 0;                              ///< In s.
@@ -32,15 +32,16 @@ struct ReportSpace {
     std::optional<Backbone> shape = {};            ///< Shape of the arm at the target.
     std::optional<Eigen::Vector3d> position = {};  ///< Target of the tip in W, m.
   };
-  /// The true arm at a time: points at equal fractions of its length, the base and the tip included, in W, m.
+  /// The true arm at a time: points at equal fractions of the arm's length, including base and tip, in W, m.
   struct TrueArm {
     double time = 0;  ///< In s.
     std::vector<Eigen::Vector3d> points;
   };
 
   std::vector<Camera> cameras = {};
-  std::vector<Target> targets = {};     ///< In the order of their starts.
-  std::vector<TrueArm> true_arms = {};  ///< In the order of time, with equal numbers of points; may be empty.
+  std::vector<Target> targets = {};  ///< In the order of their starts.
+  /// True arms in the order of time, with equal numbers of points; may be empty.
+  std::vector<TrueArm> true_arms = {};
 };
 
 /// Returns `count` (>= 2) points at equal fractions of the backbone's length, with both ends, in W, m.

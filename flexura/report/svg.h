@@ -9,7 +9,7 @@
 namespace flexura {
 
 /// Returns text escaped for XML and HTML, for content and quoted attributes. The characters & < > " ' become
-/// references. Bytes that are not UTF-8 and characters that XML forbids become U+FFFD.
+/// character references. Bytes that are not UTF-8 and characters that XML forbids become U+FFFD.
 [[nodiscard]] std::string xml_escape(std::string_view text);
 
 /// Returns a page coordinate with at most three decimals, as short as possible ("12.5", "0", never "-0").
@@ -60,7 +60,7 @@ class XmlWriter {
   std::vector<std::string> open_;
 };
 
-/// A finished picture, styled by the classes of figure.css.
+/// A complete picture. The classes of figure.css define its style.
 struct Drawing {
   double width = 0.0;   ///< Width, page units (px at scale 1).
   double height = 0.0;  ///< Height, page units.

@@ -186,12 +186,13 @@ class BoundedCheck {
   void report_undecided(const std::string& what, const Span& span, double sampled_every,
                         std::size_t intervals) {
     checked_.report.caveats.push_back(
-        fmt::format("{} undecided, {}: more than {} intervals, therefore sampled every {:.3g} s", what,
-                    span_text(span, checked_.timed.start), most_intervals(intervals), sampled_every));
+        fmt::format("{} undecided, {}: the check needs more than {} intervals, therefore the motion is "
+                    "sampled every {:.3g} s",
+                    what, span_text(span, checked_.timed.start), most_intervals(intervals), sampled_every));
   }
 
   void report_uncertain(const std::string& what, Hazard hazard, double uncertainty) {
-    checked_.report.caveats.push_back(fmt::format("{}, {}: the worst values may be {} more", what,
+    checked_.report.caveats.push_back(fmt::format("{}, {}: the worst values may be larger by {}", what,
                                                   span_text(checked_.whole(), checked_.timed.start),
                                                   amount_text(hazard, uncertainty)));
   }

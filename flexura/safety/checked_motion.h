@@ -19,9 +19,10 @@ struct CheckedMotion {
   const Arm& arm;
   const std::vector<ContactWatch>& contacts;
   const TimedMotion& timed;
-  double step = 0;  ///< Clock step, s.
+  double step = 0;  ///< Step of the clock, s.
   SafetyReport& report;
-  /// Called with the completed fraction of this motion's check; returns false to stop the check.
+  /// Function that is called with the completed fraction of this motion's check. It returns false to stop the
+  /// check.
   std::function<bool(double done)> go_on;
   /// Whether the motion is an elastic arm's shape. Jumps are then those of its command, checked separately.
   bool is_shape = false;
@@ -46,7 +47,7 @@ struct CheckedMotion {
     return times;
   }
 
-  /// Adds a violation to the report. `span` and `worst.time` are in s since the motion's start.
+  /// Adds a violation to the report. `span` and `worst.time` count from the motion's start, s.
   void add(Violation violation, const Span& span, const WorstValue& worst, double sign = 1) const {
     violation.start = timed.start + span.start;
     violation.end = timed.start + span.end;
@@ -69,7 +70,7 @@ struct CheckedMotion {
 /// Returns the rate above which a rate limit counts as violated.
 [[nodiscard]] inline double threshold_of_rate(double limit) { return limit * (1 + limit_tolerance); }
 
-/// Returns the violation for a contact, without times and depth.
+/// Returns the violation for a contact. Its times and depth are not set.
 [[nodiscard]] inline Violation contact_violation(const ContactWatch& watch, const Contact& place) {
   return {.hazard = watch.hazard(),
           .section = place.section,
@@ -80,7 +81,7 @@ struct CheckedMotion {
 /// Checks a motion with known bounds on its rates, which must start in a possible state (docs/safety.md).
 void check_bounded(const CheckedMotion& checked);
 
-/// Checks any motion at every clock step.
+/// Checks a motion at every clock step. The motion's rates may be unknown.
 void check_sampled(const CheckedMotion& checked);
 
 }  // namespace flexura

@@ -15,26 +15,25 @@
 
 namespace flexura {
 
-/// Penetration depth up to which a touch does not count as a contact. The error of distances is at most half
-/// of it.
+/// Penetrations up to this depth do not count as contacts. The error of distances is at most half of it.
 inline constexpr double contact_tolerance = 1e-6;  // m.
 
-/// Largest motion of the arm between two samples during which a contact may remain undecided.
+/// Contacts may remain undecided between two samples if the arm moves by less than this between the samples.
 inline constexpr double contact_motion = 1e-4;  // m.
 
-/// Place of the smallest clearance.
+/// Smallest clearance, and where it is.
 struct Contact {
   double clearance = no_distance;  ///< Clearance, m; a negative clearance is a penetration depth.
-  std::size_t section = 0;         ///< Section, 0 at the base.
+  std::size_t section = 0;         ///< Index of the section; 0 at the base.
   std::optional<std::size_t>
-      other_section{};  ///< Other section of a self-contact, which may be the same section.
+      other_section{};  ///< Index of the other section of a self-contact. It may equal `section`.
 };
 
 /// Computes clearances and contacts of the arm with one object: the arm itself or an obstacle.
 ///
 /// For self-contact, a pair of backbone points is considered if the backbone between them turns by pi or
-/// more. Further pairs are considered if a section of the pair, or between the pair, is thinner than the two
-/// sections on average. In these pairs the backbone between the points is longer than half a circle of their
+/// more. Further pairs are considered if a section of the pair, or between the pair, is thinner than the
+/// pair's mean radius. In these pairs, the backbone between the points is longer than half a circle of the
 /// mean radius. All other pairs cannot touch, or are neighbours (docs/safety.md).
 class ContactWatch {
  public:
@@ -45,22 +44,22 @@ class ContactWatch {
   [[nodiscard]] std::string obstacle_name() const { return obstacle_ ? obstacle_->name : ""; }
   /// Returns the smallest clearance in a possible state, or `cap` if the clearance is not below `cap`, m.
   [[nodiscard]] Contact contact(const ArmState& state, double cap = no_distance) const;
-  /// Returns all sections, or pairs of sections, that are in contact in a state: their depth is above
-  /// `contact_tolerance`.
+  /// Returns all sections, or pairs of sections, that are in contact in a state: the penetration depth
+  /// exceeds `contact_tolerance`.
   [[nodiscard]] std::vector<Contact> contacts(const ArmState& state) const;
 
-  /// Visits every section that may touch the obstacle, or every pair of sections that may touch each other.
-  /// The parameters of a visit are the ends of a chain of sections: base and section, or both sections of the
-  /// pair.
+  /// Calls `visit` for every section that may touch the obstacle, or for every pair of sections that may
+  /// touch each other. The arguments are the ends of a chain of sections: the base and the section, or the
+  /// two sections of the pair.
   void for_each_chain(const std::function<void(std::size_t first, std::size_t last)>& visit) const;
-  /// Returns the contact that belongs to a chain from section `first` to `last`, without clearance.
+  /// Returns the contact for a chain from section `first` to `last`. Its clearance is not set.
   [[nodiscard]] Contact place_of(std::size_t first, std::size_t last) const;
-  /// Returns the smallest possible clearance of the chain's last section during the chain's swing, m, as
-  /// precisely as `query` requires. For an arm at rest this is the clearance.
+  /// Returns the smallest possible clearance of the chain's last section during the chain's Swing, m, as
+  /// precisely as `query` requires. For an arm at rest, this is the clearance.
   [[nodiscard]] double clearance(const Chain& chain, const DistanceQuery& query) const;
-  /// Returns bounds on the depth of the contact during the chain's swing, m; `contact_tolerance` if there is
-  /// no deeper contact. The bounds only distinguish certainly free, certainly in contact and undecided. If
-  /// undecided, the upper bound is `contact_tolerance` plus the section's possible motion.
+  /// Returns bounds on the depth of the contact during the chain's Swing, m; `contact_tolerance` if there is
+  /// no deeper contact. The bounds only distinguish three cases: certainly free, certainly in contact, and
+  /// undecided. If undecided, the upper bound is `contact_tolerance` plus the section's possible motion.
   [[nodiscard]] QuantityBounds bounds(const Chain& chain) const;
 
  private:
@@ -76,9 +75,9 @@ class ContactWatch {
 };
 
 /// Depths of the contacts of every section, or pair of sections, with each watched object, m;
-/// `contact_tolerance` if there is no deeper contact. For motions with known bounds on their rates. A search
-/// over many quantities only needs to know whether there is a contact. Hence `find_values` returns any
-/// existing depth above the tolerance, which is much faster than finding the largest depth.
+/// `contact_tolerance` if there is no deeper contact. The motion must have known bounds on its rates. A
+/// search over many quantities only needs to know whether there is a contact. Hence `find_values` returns any
+/// existing depth above the tolerance, which is much faster to compute than the largest depth.
 class ContactDepths : public WatchedQuantities {
  public:
   /// Quantity of the watch with index `watch`, for the chain from section `first` to `last`.
@@ -96,7 +95,7 @@ class ContactDepths : public WatchedQuantities {
   void find_values(double time, std::span<const std::size_t> which, std::span<double> values) const override;
   void find_bounds(const Span& span, std::span<const std::size_t> which,
                    std::span<QuantityBounds> bounds) const override;
-  /// Returns the quantity number i, whose value is the largest depth, as a single quantity.
+  /// Returns quantity number i as a single quantity, whose value is the largest depth.
   [[nodiscard]] WatchedQuantity depth(std::size_t i) const;
 
  private:

@@ -244,7 +244,7 @@ void report_sampled(std::vector<char> is_unproven, const Drive& drive, std::size
   const std::string names = names_of(is_unproven, drive);
   if (names.empty()) return;
   report.caveats.push_back(fmt::format(
-      "motor speed and step rate of {}: sampled every {:.6g} s; the motion may be faster between two steps",
+      "motor speed and step rate of {}: sampled every {:.6g} s; the motion may be faster between two samples",
       names, step));
 }
 
@@ -257,17 +257,17 @@ void report_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double
     if (!names.empty()) report.caveats.push_back(fmt::format(fmt::runtime(what), names, step));
   };
   say(&AxisNotes::has_single_steps,
-      "motor speed and step rate of {}: a single microstep in a row of {:.6g} s already exceeds the limit; "
-      "it is accepted where the motion before rounding is within the limit");
+      "motor speed and step rate of {}: a single microstep in a clock step of {:.6g} s already exceeds the "
+      "limit; it is accepted if the motion before rounding is within the limit");
   say(&AxisNotes::is_rounded_over,
       "motor speed and step rate of {}: the motion is within the limit, but exceeds it after rounding, by up "
       "to one microstep in {:.6g} s");
   say(&AxisNotes::takes_up_backlash,
-      "motors of {}: where a tendon reverses, its backlash is compensated within one clock step, {:.6g} s; a "
-      "shorter step requires more speed and acceleration");
+      "motors of {}: when a tendon reverses, its backlash is compensated within one clock step, {:.6g} s; a "
+      "shorter step requires a higher speed and acceleration");
   say(&AxisNotes::is_over_while_steered,
-      "motors of {}: while the arm is servoed, speeds and accelerations are checked without backlash and "
-      "rounding, as in its limiter; with both, the list exceeds a limit within one clock step, {:.6g} s");
+      "motors of {}: during a servo, speeds and accelerations are checked without backlash and rounding, as "
+      "in the limiter; with both, the commands exceed a limit within one clock step, {:.6g} s");
 }
 
 }  // namespace

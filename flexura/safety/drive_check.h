@@ -23,14 +23,14 @@ struct SteeredSpan {
 };
 
 /// Checks the list of motor commands of a motion against the motors' limits on speed, step rate, acceleration
-/// and position, and adds violations to `report`. `times`, s, increasing, are the times of the list's rows.
-/// `state_at` returns the arm's state at a time. The check ends before the first impossible state.
+/// and position, and adds violations to `report`. `times`: increasing times of the list's rows, s. `state_at`
+/// returns the arm's state at a time. The check ends before the first impossible state.
 ///
 /// A motor turns at a constant rate between two rows. Hence speed, step rate and position of the list, in
 /// whole microsteps, are exact for any motion. If a single microstep in a short row exceeds the limit, the
-/// rate before rounding is checked instead, with a caveat. Between two rows the motion itself may be faster.
-/// For axes with a limit on speed or step rate and without a violation in a row, `rates` may prove the
-/// contrary (tendon_speed_bounds). A caveat names the axes without this proof.
+/// rate before rounding is checked instead, with a caveat. Between two rows, the motion itself may be faster
+/// than the list. `rates` may prove that it is not (tendon_speed_bounds). A caveat names the axes without
+/// this proof that have a limit on speed or step rate and no violation in a row.
 ///
 /// The acceleration is the change of the rate, before rounding, divided by the time between the middles of
 /// two rows. Before the first row and after the last row the motors are at rest, and they have one step to
@@ -39,10 +39,10 @@ struct SteeredSpan {
 /// The checked values include backlash compensation. Caveats name the axes where only the backlash
 /// compensation, or only the rounding, violates a limit.
 ///
-/// In the spans `steered` (increasing, disjoint), a CommandLimiter determines the commands during the run. It
-/// ignores backlash and rounding in speeds and accelerations. Hence the check ignores them in these spans,
-/// with a caveat that names the axes where backlash or rounding exceeds a limit. In a span that is not
-/// planned only positions are checked, because rates are unknown.
+/// In the spans `steered` (increasing, disjoint), a CommandLimiter determines the commands during the run.
+/// The limiter ignores backlash and rounding in speeds and accelerations. Hence the check ignores them in
+/// these spans. A caveat names the axes for which backlash or rounding exceeds a limit. In spans that are not
+/// planned, only positions are checked, because rates are unknown.
 void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmState(double time)>& state_at,
                  std::span<const double> times, const RateBounds& rates, SafetyReport& report,
                  std::span<const SteeredSpan> steered = {});

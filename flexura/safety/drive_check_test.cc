@@ -104,7 +104,7 @@ TEST_F(DriveCheck, SaysWhereALawMayBeTooFastBetweenTwoStepsAndOnlyThere) {
   ASSERT_EQ(slipped.caveats.size(), 1U);
   EXPECT_EQ(
       slipped.caveats[0],
-      "motor speed and step rate of 1.1: sampled every 0.01 s; the motion may be faster between two steps");
+      "motor speed and step rate of 1.1: sampled every 0.01 s; the motion may be faster between two samples");
   // For a bend of 1 rad the motor turns by 10 rad. A minimum-jerk motion of 1 s has at most 1.875 rad/s of
   // bend.
   const auto smooth = point_to_point_motion(state(0), state(1), {Profile::minimum_jerk(1)});
@@ -154,8 +154,8 @@ TEST_F(DriveCheck, PlayIsTakenUpAtOnceAndCounts) {
   EXPECT_NEAR(report.violations[0].value, 13, 1e-7);
   ASSERT_EQ(report.caveats.size(), 1U);
   EXPECT_EQ(report.caveats[0],
-            "motors of 1.1: where a tendon reverses, its backlash is compensated within one clock step, "
-            "0.01 s; a shorter step requires more speed and acceleration");
+            "motors of 1.1: when a tendon reverses, its backlash is compensated within one clock step, "
+            "0.01 s; a shorter step requires a higher speed and acceleration");
   // A motion that is too fast throughout, with or without backlash, needs no caveat.
   drive_.axes[0].motor.max_speed = 2;
   drive_.axes[0].spool.backlash = 0;
@@ -199,9 +199,10 @@ TEST_F(DriveCheck, LetsSingleMicrostepsPassWhereARowIsTooShortForOne) {
   const SafetyReport slow = check_bend(1);
   EXPECT_TRUE(slow.is_safe());
   ASSERT_EQ(slow.caveats.size(), 1U);
-  EXPECT_EQ(slow.caveats[0],
-            "motor speed and step rate of 1.1: a single microstep in a row of 0.01 s already exceeds the "
-            "limit; it is accepted where the motion before rounding is within the limit");
+  EXPECT_EQ(
+      slow.caveats[0],
+      "motor speed and step rate of 1.1: a single microstep in a clock step of 0.01 s already exceeds the "
+      "limit; it is accepted if the motion before rounding is within the limit");
   EXPECT_FALSE(check_bend(1.3).is_safe()) << "0.62 a row";
   drive_.axes[0].motor.max_step_rate = 1 / step;
   EXPECT_TRUE(check_bend(1).caveats.empty()) << "one a row is within the limit";

@@ -10,22 +10,22 @@
 
 namespace flexura {
 
-/// Fraction of a limit by which a value may exceed the limit. It allows for rounding, because limits are
-/// given in degrees and values computed in radians.
+/// Fraction of a limit by which a value may exceed the limit. It allows for rounding errors, because limits
+/// are given in degrees and values are computed in radians.
 inline constexpr double limit_tolerance = 1e-9;
 
 /// A limited quantity of one section.
 struct LimitWatch {
   Hazard hazard = Hazard::bend;
-  std::size_t section = 0;                             ///< Section, 0 at the base.
-  double limit = 0;                                    ///< Limit in the hazard's unit, as reported.
+  std::size_t section = 0;                             ///< Index of the section; 0 at the base.
+  double limit = 0;                                    ///< Limit for messages, in the hazard's unit.
   double sign = 1;                                     ///< 1 for an upper limit, -1 for a lower limit.
   std::function<double(const ArmState& state)> value;  ///< Returns the limited value in the hazard's unit.
   /// Returns a bound on |d value/dt| during [start, end], s, of a motion with known bounds on its rates.
   std::function<double(const Motion& motion, double start, double end)> rate;
 
   /// Returns the threshold: the limit is violated if sign * value exceeds the threshold. Folding is a
-  /// violation already at its limit; all other values may reach their limits.
+  /// violation at the limit itself; all other values may reach their limits.
   [[nodiscard]] double threshold() const;
 };
 

@@ -24,8 +24,8 @@ struct TimedMotion {
 /// Checks motions that are executed one after another from the state `initial` (docs/safety.md). Hazards are
 /// bends, bend rates, stretches, stretch rates, folding, self-contact, contact with obstacles, and jumps. For
 /// a motion with known bounds on its rates, the check misses nothing between samples (spans.h). Other motions
-/// are sampled every `step` s, which the report states. `progress` may be null. If it cancels the check, the
-/// report is incomplete.
+/// are sampled every `step` s, and the report states this. `progress` may be null. If it cancels the check,
+/// the report is incomplete.
 [[nodiscard]] SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacles,
                                          const ArmState& initial, const std::vector<TimedMotion>& motions,
                                          double step, Progress* progress = nullptr);
@@ -37,7 +37,7 @@ struct TimedMotion {
                                          const ArmState& initial, const std::vector<TimedMotion>& motions,
                                          double step, Progress* progress = nullptr);
 
-/// Returns true for hazards of the arm's shape, as opposed to those of the command.
+/// Returns true for hazards of the arm's shape, and false for hazards of the command.
 [[nodiscard]] bool is_of_shape(Hazard hazard);
 
 /// Returns whether a state is possible: bends are at most `largest_bend`, and lengths are finite and above 0.

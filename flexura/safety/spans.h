@@ -16,8 +16,8 @@ struct Span {
   double end = 0;
 };
 
-/// Returns the text of a span moved by `shift`, s: "0.5 s to 2 s", or "at 2 s" for a single time. Times have
-/// six digits, or as many as distinguish the ends.
+/// Returns the text of a span shifted by `shift`, s: "0.5 s to 2 s", or "at 2 s" for a single time. Times
+/// have six digits, or as many as needed to distinguish the ends.
 [[nodiscard]] std::string span_text(const Span& span, double shift = 0);
 
 /// Lower and upper bound of a quantity.
@@ -26,7 +26,7 @@ struct QuantityBounds {
   double high = 0;
 };
 
-/// A function of time with bounds over intervals, so that searches miss nothing between two samples.
+/// A function of time with bounds over intervals. With the bounds, searches miss nothing between two samples.
 struct WatchedQuantity {
   std::function<double(double time)> value;
   /// Returns bounds on the value during all of [start, end], s. The bounds converge to the value as the
@@ -58,15 +58,15 @@ class WatchedQuantities {
 
 /// Parameters of a search.
 struct SpanSearch {
-  double time = 0;   ///< Length above which an undecided interval is halved, s.
-  double value = 0;  ///< An undecided interval whose upper bound exceeds the limit by more than this value is
-                     ///< halved, too.
+  double time = 0;  ///< Undecided intervals longer than this are halved, s.
+  /// Undecided intervals whose upper bound exceeds the limit by more than this value are halved too.
+  double value = 0;
   /// Largest number of intervals per quantity. Samples decide the remaining intervals.
   std::size_t most_intervals = 200'000;
-  /// Largest number of intervals of all quantities together, distributed evenly.
+  /// Largest total number of intervals of all quantities, distributed evenly among them.
   std::size_t most_together = std::numeric_limits<std::size_t>::max();
-  /// Called from time to time with the fraction of the time that is decided. If the function returns false,
-  /// the search ends with the results found up to then.
+  /// Function that is called repeatedly with the decided fraction of the time. If it returns false, the
+  /// search ends with the results so far.
   std::function<bool(double decided)> go_on = {};
 };
 
@@ -74,8 +74,8 @@ struct SpanSearch {
 struct FoundSpans {
   std::vector<Span>
       spans;  ///< Spans in which the quantity is above its limit, in order; touching spans are joined.
-  /// Span from the first to the last time that only samples decided, because the number of intervals reached
-  /// its limit.
+  /// Span from the first to the last time for which only samples decided, because the number of intervals
+  /// reached its limit.
   std::optional<Span> undecided{};
   double sampled_every = 0;  ///< Largest time between samples in `undecided`, s.
 };
@@ -87,7 +87,7 @@ struct FoundSpans {
 /// middle are. Otherwise it is below the limit if its upper bound exceeds the limit by at most search.value.
 /// Hence a missed violation is shorter than half of search.time and exceeds the limit by at most
 /// search.value. The ends of spans are accurate to search.time. An interval that is too short to halve
-/// (`shortest_interval`) counts as above the limit unless proved below it.
+/// (`shortest_interval`) counts as above the limit, unless it is proved to be below.
 ///
 /// Intervals are processed by decreasing length, and either all or none of the intervals of one length are
 /// evaluated. If the number of intervals reaches its limit, undecided times are therefore sampled evenly.
@@ -98,7 +98,7 @@ struct FoundSpans {
 [[nodiscard]] FoundSpans spans_above(double limit, const WatchedQuantity& quantity, Span whole,
                                      const SpanSearch& search);
 
-/// Length below which intervals are not halved, s.
+/// Intervals shorter than this are not halved, s.
 inline constexpr double shortest_interval = 1e-12;
 
 /// Returns whether a span is too short to halve. At late times, the spacing of doubles is larger than

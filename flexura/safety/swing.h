@@ -14,9 +14,9 @@ namespace flexura {
 /// interval (docs/safety.md).
 class Swing {
  public:
-  /// Makes the swing of an arm at rest in a state.
+  /// Constructor for an arm at rest in a state.
   Swing(const Arm& arm, const ArmState& state);
-  /// Makes the swing of an arm during `span` of a motion with known bounds on its rates.
+  /// Constructor for an arm during `span` of a motion with known bounds on its rates.
   Swing(const Arm& arm, const Motion& motion, const Span& span);
 
   /// Returns whether the state in the middle is possible; otherwise there are no tubes.
@@ -40,8 +40,8 @@ class Chain {
   /// `swing` must outlive this object.
   Chain(const Swing& swing, std::size_t first);
 
-  /// Extends the chain to section `last`. Restarts at `first` if the chain begins at another section, or
-  /// `last` is before the chain's last section.
+  /// Extends the chain to section `last`. Restarts the chain at `first` if it begins at another section, or
+  /// if `last` is before its last section.
   void go_to(std::size_t first, std::size_t last);
 
   [[nodiscard]] std::size_t first() const { return first_; }
@@ -53,8 +53,9 @@ class Chain {
   /// Returns the last section's tube with its radius increased (sign 1) or decreased (sign -1) by `share`
   /// times the section's possible motion.
   [[nodiscard]] SectionTube grown(double sign, double share = 1) const;
-  /// Returns the rule for pairs of points, given the possible changes. With sign -1, the rule includes all
-  /// pairs that may have to be considered; with sign 1, only the pairs that certainly must be considered.
+  /// Returns the rule for pairs of points that takes the possible motion into account. With sign -1, the rule
+  /// selects all pairs that may have to be considered. With sign 1, it selects only the pairs that certainly
+  /// must be considered.
   [[nodiscard]] PairRule rule(double sign) const;
   /// Returns whether the rule includes any pair of points.
   [[nodiscard]] bool has_pairs(const PairRule& rule) const;

@@ -14,7 +14,7 @@
 // by at most `distance_tolerance`.
 namespace flexura {
 
-inline constexpr double distance_tolerance = 5e-7;  ///< Accuracy of distances, m.
+inline constexpr double distance_tolerance = 5e-7;  ///< Largest error of distances, m.
 inline constexpr double no_distance = std::numeric_limits<double>::infinity();
 
 /// The tube of one section in a state of the arm.
@@ -23,11 +23,11 @@ struct SectionTube {
   Eigen::Vector2d bend;               ///< Bend vector, rad.
   double length = 0;                  ///< Length with stretch, m.
   std::array<double, 2> radius = {};  ///< Radius at the section's start and end, m.
-  /// Turn of the backbone from the arm's base to the section's start: the sum of |bend|, rad.
+  /// Total turning angle of the backbone from the arm's base to the section's start: the sum of |bend|, rad.
   double turn = 0;
   double start = 0;  ///< Length of the backbone from the arm's base to the section's start, m.
   /// A quarter of the circumference (pi/2 times the radius) at the section's start and end, m, for PairRule.
-  /// Unchanged in thicker or thinner copies of a tube.
+  /// It remains unchanged in thicker or thinner copies of a tube.
   std::array<double, 2> girth = {};
 
   /// Returns the backbone point at the fraction `u` of the section, in [0, 1].
@@ -43,52 +43,52 @@ struct SectionTube {
 [[nodiscard]] std::vector<SectionTube> tube_arcs(const Arm& arm, const ArmState& state);
 
 /// Rule that selects pairs of backbone points. A pair is selected if the backbone between its points turns by
-/// `turn`, rad, or more. A pair is also selected if this piece of backbone is at least `gap`, m, longer than
-/// half a circle of the pair's mean radius.
+/// `turn`, rad, or more. A pair is also selected if the backbone between its points exceeds half a circle of
+/// the pair's mean radius by at least `gap`, m.
 struct PairRule {
   double turn = 0;
   double gap = no_distance;
 };
 
-/// Required precision of a smallest distance: values at or above `cap` do not matter, and any value below
-/// `enough` suffices, m.
+/// Required precision of a smallest distance, m. Distances of at least `cap` need not be computed, and any
+/// distance below `enough` suffices.
 struct DistanceQuery {
   double cap = no_distance;
   double enough = -no_distance;
 };
 
 /// Returns the smallest distance between the surfaces of `a` and `b`, m, over the pairs of backbone points
-/// that `rule` selects. `a` is nearer to the base than `b`, or the same section. Negative if the tubes
-/// overlap; query.cap if no selected pair is nearer.
+/// that `rule` selects. `a` is nearer to the base than `b`, or is the section `b` itself. The result is
+/// negative if the tubes overlap, and query.cap if no selected pair is nearer than query.cap.
 ///
-/// The method is branch and bound. A piece of an arc, of length l and turn psi, is within l min(psi/8, 1/2)
-/// of its chord. Hence the distance of two chords bounds the distance of their pieces, more tightly for
-/// shorter pieces.
+/// The method is branch and bound. A piece of an arc with the length l and the angle psi is within l
+/// min(psi/8, 1/2) of its chord. Hence the distance of two chords bounds the distance of their pieces, more
+/// tightly for shorter pieces.
 [[nodiscard]] double tube_distance(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                                    const DistanceQuery& query = {});
 
-/// Returns true if all pairs that `rule` selects are proved to be at least `distance`, m, apart. False if no
-/// proof is found within the limit on steps.
+/// Returns true if it proves that all pairs selected by `rule` are at least `distance`, m, apart. Returns
+/// false if it finds no proof within the limit on steps.
 [[nodiscard]] bool stay_apart(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                               double distance);
 
-/// Returns true if a pair that `rule` selects is proved to be nearer than `distance`, m. False if no proof is
-/// found within the limit on steps.
+/// Returns true if it proves that a pair selected by `rule` is nearer than `distance`, m. Returns false if it
+/// finds no proof within the limit on steps.
 [[nodiscard]] bool come_within(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                                double distance);
 
-/// Returns the smallest distance between the obstacle and the tube's surface, from the fraction `from` of the
-/// section on, m. Negative if tube and obstacle overlap. Exact for a plane.
+/// Returns the smallest distance, m, between the obstacle and the tube's surface beyond the fraction `from`
+/// of the section. It is negative if tube and obstacle overlap. It is exact for a plane.
 [[nodiscard]] double obstacle_distance(const SectionTube& tube, double from, const Obstacle& obstacle,
                                        const DistanceQuery& query);
 
-/// Returns true if the tube is proved to be at least `distance`, m, from the obstacle. False if no proof is
-/// found within the limit on steps.
+/// Returns true if it proves that the tube is at least `distance`, m, from the obstacle. Returns false if it
+/// finds no proof within the limit on steps.
 [[nodiscard]] bool stays_clear(const SectionTube& tube, double from, const Obstacle& obstacle,
                                double distance);
 
-/// Returns true if the tube is proved to be nearer to the obstacle than `distance`, m. False if no proof is
-/// found within the limit on steps.
+/// Returns true if it proves that the tube is nearer to the obstacle than `distance`, m. Returns false if it
+/// finds no proof within the limit on steps.
 [[nodiscard]] bool comes_within(const SectionTube& tube, double from, const Obstacle& obstacle,
                                 double distance);
 

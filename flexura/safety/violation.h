@@ -9,19 +9,19 @@
 
 namespace flexura {
 
-/// Kinds of violations; each has a unit for value and limit.
+/// Kinds of violations, with the unit of value and limit.
 enum class Hazard : std::uint8_t {
-  bend,                ///< A section bends more than allowed; rad.
-  bend_rate,           ///< A section bends faster than allowed; rad/s.
-  stretch,             ///< A section is longer or shorter than allowed; factor.
-  stretch_rate,        ///< A section changes its length faster than allowed; 1/s.
-  folding,             ///< The inner side of the tube folds: curvature times radius reaches 1; no unit.
-  jump,                ///< The motion has two states at one time; rad for a bend, a factor for a stretch.
-  not_finite,          ///< A value of the motion's formula is not finite, or a length is not above 0.
-  self_contact,        ///< The arm touches itself; depth in m.
-  obstacle,            ///< The arm touches an obstacle; depth in m.
-  motor_speed,         ///< A motor turns faster than its limit; rad/s.
-  step_rate,           ///< A motor's controller gives more microsteps per second than its limit; 1/s.
+  bend,          ///< A section bends more than allowed; rad.
+  bend_rate,     ///< A section bends faster than allowed; rad/s.
+  stretch,       ///< A section is longer or shorter than allowed; factor.
+  stretch_rate,  ///< A section changes its length faster than allowed; 1/s.
+  folding,       ///< The tube folds on the inner side of a bend: curvature times radius reaches 1; no unit.
+  jump,          ///< The motion has two states at one time; the unit is rad for a bend, none for a stretch.
+  not_finite,    ///< A value of the motion's formula is not finite, or a length is not above 0.
+  self_contact,  ///< The arm touches itself; depth in m.
+  obstacle,      ///< The arm touches an obstacle; depth in m.
+  motor_speed,   ///< A motor turns faster than its limit; rad/s.
+  step_rate,     ///< A motor's controller would have to exceed its largest microstep rate; 1/s.
   motor_acceleration,  ///< A motor accelerates or decelerates faster than its limit; rad/s^2.
   motor_position,      ///< A motor exceeds its position limit; microsteps.
   workspace,  ///< The tip's target is outside the workspace; distance from the nearest reachable pose in m.
@@ -33,14 +33,15 @@ struct Violation {
   double start = 0;       ///< Start of the span, s.
   double end = 0;         ///< End of the span, s.
   double worst_time = 0;  ///< Time of `value`, s.
-  /// Section, 0 at the base; for a motor, the section of its tendon.
+  /// Index of the section, 0 at the base; for a motor, that of its tendon's section.
   std::optional<std::size_t> section = {};
-  std::optional<std::size_t> other_section = {};  ///< Section that `section` touches, 0 at the base.
-  std::string name = {};                          ///< Name of the obstacle, the motor's axis or the task.
-  double value = 0;                               ///< Worst value in the span, in the hazard's unit.
-  double limit = 0;                               ///< Limit, in the hazard's unit.
-  bool is_of_stretch = false;  ///< Whether a jump is of the stretch (a factor), not of the bend (rad).
-  std::optional<Eigen::Vector3d> target = {};  ///< Position that the tip does not reach, in W, m.
+  /// Index of the section that `section` touches; 0 at the base.
+  std::optional<std::size_t> other_section = {};
+  std::string name = {};       ///< Name of the obstacle, the motor's axis or the task.
+  double value = 0;            ///< Worst value in the span, in the hazard's unit.
+  double limit = 0;            ///< Limit, in the hazard's unit.
+  bool is_of_stretch = false;  ///< Whether a jump is one of the stretch (a factor) instead of the bend (rad).
+  std::optional<Eigen::Vector3d> target = {};  ///< Target that the tip does not reach, in W, m.
 
   /// Returns "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg". The times are formatted by span_text()
   /// (spans.h).
@@ -59,17 +60,17 @@ struct SafetyReport {
   /// Reasons why the check may have missed a violation between two samples: "sampled every 0.02 s from ...".
   std::vector<std::string> caveats;
   std::vector<std::string> notes;  ///< Remarks that do not affect safety.
-  bool is_complete = true;         ///< Whether the check was completed, not cancelled.
+  bool is_complete = true;         ///< Whether the check was completed instead of cancelled.
 
   [[nodiscard]] bool is_safe() const { return violations.empty() && is_complete; }
   /// Sorts the violations.
   void sort();
 };
 
-/// Returns the indices in `report.violations`, ascending, of at most `most` most informative violations. The
-/// worst violation of each hazard has priority, then the worst of each further obstacle, then all others.
-/// Violations of sections have priority over violations of motors or tasks. Among violations with the same
-/// worst time only the first is included.
+/// Selects at most `most` informative violations and returns their ascending indices in `report.violations`.
+/// The worst violation of each hazard has the highest priority, then the worst of each other obstacle, then
+/// all others. Violations of sections have priority over violations of motors or tasks. Of violations with
+/// equal worst times, only the first is selected.
 [[nodiscard]] std::vector<std::size_t> most_relevant(const SafetyReport& report, std::size_t most);
 
 /// Returns whether a hazard concerns a motor.

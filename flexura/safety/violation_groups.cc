@@ -98,7 +98,8 @@ std::vector<std::string> violation_lines(const SafetyReport& report) {
   for (const ViolationGroup& group : most_relevant(report, groups, max_violation_lines))
     lines.push_back(text_of(report, group));
   if (groups.size() > lines.size())
-    lines.push_back(fmt::format("and {} more kinds of less severe violations", groups.size() - lines.size()));
+    lines.push_back(
+        fmt::format("and {} more groups of less severe violations", groups.size() - lines.size()));
   return lines;
 }
 

@@ -66,7 +66,7 @@ TEST(ViolationGroups, KeepTheWorstOfEveryHazardWhenTheyAreTooMany) {
   report.violations.push_back({.hazard = Hazard::bend, .section = 7, .value = 1.1, .limit = 1});
   const auto lines = violation_lines(report);
   ASSERT_EQ(lines.size(), max_violation_lines + 1);
-  EXPECT_EQ(lines.back(), "and 201 more kinds of less severe violations");
+  EXPECT_EQ(lines.back(), "and 201 more groups of less severe violations");
   EXPECT_THAT(lines, testing::Contains(testing::HasSubstr("section 8: bend")));
   EXPECT_THAT(lines, testing::Contains(testing::HasSubstr("sections 300 and 320")));
   EXPECT_THAT(lines, testing::Not(testing::Contains(testing::HasSubstr("sections 1 and 21"))));

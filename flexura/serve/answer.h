@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// An outgoing HTTP answer: `head`, then `body` or `fixed`.
+/// An outgoing HTTP response: `head`, followed by `body` or `fixed`.
 struct Answer {
   std::string head;  ///< Status line and header lines, with the empty line at the end.
   std::string body;
@@ -27,12 +27,12 @@ struct AnswerHead {
   bool last = false;
 };
 
-/// Returns the text of a head. Its security headers forbid everything that a page of this server does not
-/// need (docs/viewer-protocol.md).
+/// Returns the text of a head. Its security headers forbid everything that the server's pages do not need
+/// (docs/viewer-protocol.md).
 std::string format_head(const AnswerHead& head);
 
-/// Returns an answer that refuses a request, with the reason phrase of `status` as body. `more` and `last`:
-/// see AnswerHead.
+/// Returns an answer that refuses a request, with the reason phrase of `status` as body. `more` and `last`
+/// are as in AnswerHead.
 Answer refusal(int status, std::string_view more, bool last);
 
 /// Returns the reason phrase of a status, such as "Not Found" for 404; "Answer" for a status without a

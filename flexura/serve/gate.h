@@ -12,8 +12,8 @@ namespace flexura {
 /// Access control of the server: its host names, allowed pages and the token.
 class Gate {
  public:
-  /// `names`: further host names of this server ("name" or "name:port"). A name without a port has the port
-  /// `port`.
+  /// `names`: further host names of this server ("name" or "name:port"). For a name without a port, the port
+  /// is `port`.
   Gate(std::uint16_t port, const std::vector<std::string>& names, std::string token);
 
   /// Returns true if a Host header names this server. `local` is the local address of the connection, without

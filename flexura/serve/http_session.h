@@ -33,8 +33,8 @@ struct Upgrade {
 };
 using Step = std::variant<ReadMore, Answer, Question, Upgrade>;
 
-/// The protocol of one HTTP connection, without a socket: its input is bytes, its output actions. Requests
-/// that arrive together are answered one after the other.
+/// The protocol of one HTTP connection, without a socket. Its input is bytes, and its output is actions.
+/// Requests that arrive together are answered one after another.
 class HttpSession {
  public:
   /// `local`: the local address of the connection, without its port.
@@ -43,12 +43,13 @@ class HttpSession {
   /// Adds bytes from the client. Before next() returns ReadMore again, at most `longest_header` bytes may be
   /// added.
   void feed(std::string_view bytes);
-  /// Returns the next action: ReadMore until a request is complete. After a Question call format(); after an
-  /// Upgrade that fails call refuse(). After an Answer with `last`, call nothing more.
+  /// Returns the next action: ReadMore until a request is complete. The caller must call format() after a
+  /// Question, and refuse() after an Upgrade that fails. After an Answer with `last`, it must not call any
+  /// more functions.
   Step next();
-  /// Returns the HTTP answer with the host's answer to the last Question.
+  /// Returns the HTTP response with the host's answer to the last Question.
   [[nodiscard]] Answer format(HttpAnswer host) const;
-  /// Returns the answer for an Upgrade that is impossible.
+  /// Returns the HTTP response for an Upgrade that is impossible.
   [[nodiscard]] Answer refuse(int status) const;
   /// Returns true if a request has begun to arrive.
   [[nodiscard]] bool begun() const { return !buffer_.empty(); }
@@ -56,8 +57,8 @@ class HttpSession {
   [[nodiscard]] std::size_t held() const { return buffer_.size(); }
 
  private:
-  /// Reads the head of the next request. Returns 0, or the status with which to refuse the request. With 0
-  /// and an empty `head`, more bytes are needed.
+  /// Reads the head of the next request. Returns 0, or the status with which to refuse the request. If it
+  /// returns 0 and `head` is empty, more bytes are needed.
   int read_head(std::optional<RequestHead>* head);
   [[nodiscard]] Step decide(const RequestHead& head) const;
   [[nodiscard]] Step secret(const RequestHead& head, std::string_view path) const;

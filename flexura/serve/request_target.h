@@ -10,8 +10,7 @@ namespace flexura {
 
 /// Decoded target of a request.
 struct RequestTarget {
-  std::string
-      path;  ///< Path, beginning with "/", without the parts "." and ".." and without control characters.
+  std::string path;  ///< Path that begins with "/". It has no parts "." or "..", and no control characters.
   std::vector<std::pair<std::string, std::string>>
       query;  ///< Keys and values in the order of the query; a key without "=" has an empty value.
 

@@ -21,11 +21,11 @@ struct ServerConfig {
   std::size_t longest_header = std::size_t{16} * 1024;
   std::size_t longest_message = std::size_t{64} * 1024;
   std::size_t clients = 8;
-  /// Largest number of waiting texts per client; one more text closes the connection. Above a quarter of this
-  /// number, nothing is read from the client.
+  /// Largest number of waiting texts per client. One more text closes the connection. Above a quarter of this
+  /// number, the server reads nothing from the client.
   std::size_t waiting_texts = 1024;
   std::size_t waiting_bytes =
-      std::size_t{4} * 1024 * 1024;  ///< Limit of the total size of these texts, bytes.
+      std::size_t{4} * 1024 * 1024;  ///< Limit of the total size of the waiting texts, bytes.
   std::chrono::milliseconds handshake{5000};
   std::chrono::milliseconds idle{20000};
 };
@@ -46,7 +46,7 @@ struct HttpAnswer {
   std::string policy;  ///< Content-Security-Policy; if empty, the strict policy of the server.
 };
 
-/// The program behind a server. All calls are from the server's thread and must return at once.
+/// The program behind a server. All functions are called on the server's thread and must return immediately.
 class Host {
  public:
   virtual ~Host() = default;
@@ -59,7 +59,7 @@ class Host {
   /// Receives a text message of a client, at most `longest_message` bytes of UTF-8.
   virtual void on_message(ClientId client, std::string text) = 0;
   /// Receives an authorised GET request for a target that is not an asset. `target`: path and query as
-  /// received, unchecked. `answer` may be called once, at any later time, from any thread.
+  /// received, unchecked. `answer` may be called once, at any time, from any thread.
   virtual void asked(std::string target, std::function<void(HttpAnswer)> answer) = 0;
 };
 
@@ -80,17 +80,17 @@ class Server {
   /// addresses, the URL has an address that other machines can use, if there is one.
   [[nodiscard]] std::string url() const;
 
-  /// Sends a text. Every text reaches the client, in order; a client that does not read is disconnected.
+  /// Sends a text. Every text reaches the client, in order. A client that does not read is disconnected.
   void send(ClientId client, std::string text);
   /// Returns true if a client reads its messages, so that a Host may answer further requests. If a client
-  /// does not read, nothing more is read from it, and it is disconnected after `idle`.
+  /// does not read, the server reads nothing more from it, and disconnects it after `idle`.
   [[nodiscard]] bool has_room(ClientId client) const;
   /// Sends the newest message of a stream, which is identified by a small number. Older messages of the
-  /// stream that were not sent are dropped.
+  /// stream that were not sent are discarded.
   void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message);
   /// Returns the total size of all messages that wait for a client or are being sent, bytes.
   [[nodiscard]] std::size_t waiting_bytes() const;
-  /// Returns the number of clients to which a message is being sent; includes clients that do not read.
+  /// Returns the number of clients to which a message is being sent, including clients that do not read.
   [[nodiscard]] std::size_t busy_clients() const;
 
  private:

@@ -18,7 +18,8 @@ std::string new_token() {
     count = ::getrandom(bytes.data(), bytes.size(), 0);
   } while (count < 0 && errno == EINTR);
   if (count != static_cast<ssize_t>(bytes.size())) {
-    throw std::system_error(errno, std::generic_category(), "the system gave no random bytes for a token");
+    throw std::system_error(errno, std::generic_category(),
+                            "the system returned no random bytes for a token");
   }
   constexpr std::string_view digits = "0123456789abcdef";
   std::string token;

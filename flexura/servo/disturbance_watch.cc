@@ -25,7 +25,8 @@ Eigen::VectorXd points_of(const Arm& arm, const ArmState& shape) {
 }
 
 std::string as_if_released(std::size_t tendon) {
-  return fmt::format("as if tendon {} gave way: it is broken or slack, or its motor lost steps", tendon + 1);
+  return fmt::format("as if tendon {} were released: it is broken or slack, or its motor lost steps",
+                     tendon + 1);
 }
 
 // Deviation since the start that an error of the model may cause, as a share of the motion.

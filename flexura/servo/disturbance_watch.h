@@ -13,40 +13,42 @@ namespace flexura {
 /// Settings of a DisturbanceWatch.
 struct DisturbanceConfig {
   double limit = 0.05;  ///< Deviation that counts as a disturbance, share of the arm's length; > 0.
-  /// Additional deviation that an error of the model may cause, as a share of the predicted motion.
+  /// Additional deviation allowed for errors of the model, as a share of the predicted motion.
   double model_error = 0.35;
   double grace = 0.3;   ///< Time after the first observation until the watch begins, s.
-  double window = 0.5;  ///< Age of the observation that the newest one is compared with, s; > 0.
-  int patience = 3;     ///< Number of successive observations that begin or end a disturbance.
+  double window = 0.5;  ///< The newest observation is compared with the one this much earlier, s; > 0.
+  /// Number of successive observations needed to detect the beginning or the end of a disturbance.
+  int patience = 3;
 };
 
 /// Detects that an arm does not follow its drives: something pushes or holds it, a tendon breaks, or a motor
 /// loses steps (docs/servo.md, "Disturbances").
 ///
-/// The arm's shape at rest changes with the drives as the model predicts, up to errors that grow with the
-/// motion. The deviation is the distance of the observed shape from this prediction, root mean square along
-/// the arm, share of its length. A constant error of the model, for example an unknown payload, causes none.
+/// The model predicts the change of the arm's shape at rest from the motion of the drives. The deviation is
+/// the distance of the observed shape from this prediction: root mean square along the arm, share of its
+/// length. A constant error of the model, for example an unknown payload, causes no deviation.
 class DisturbanceWatch {
  public:
-  /// Throws std::invalid_argument for numbers out of their ranges.
+  /// Throws std::invalid_argument for numbers out of range.
   explicit DisturbanceWatch(ArmModel model, const DisturbanceConfig& config = {});
 
   /// Adds an observation of the arm. `time`: s, later than the previous one. `rest`: estimated shape without
-  /// swing. `command`: position of the drives at this time. `sigma`: standard deviation of the shape, share
-  /// of the length. Ignores shapes that are not finite, and commands without an equilibrium.
+  /// oscillation. `command`: position of the drives at this time. `sigma`: standard deviation of the shape,
+  /// share of the length. Ignores shapes that are not finite, and commands without an equilibrium.
   void add(double time, const ArmState& rest, const ArmState& command, double sigma);
 
   /// Returns true from the observation at which a disturbance was detected until it is over.
   [[nodiscard]] bool is_disturbed() const { return is_disturbed_; }
-  /// Returns the deviation at the last observation, share of the arm's length.
+  /// Returns the deviation of the last observation, share of the arm's length.
   [[nodiscard]] double deviation() const { return deviation_; }
-  /// Returns the time for which a disturbance lasts, s; 0 without a disturbance.
+  /// Returns how long the current disturbance has lasted, s; 0 without a disturbance.
   [[nodiscard]] double lasts() const { return is_disturbed_ ? last_.time - since_ : 0; }
-  /// Describes the last deviation: its size and what may have caused it. A tendon is named if its release
-  /// explains most of the deviation: it is broken or slack, or its motor lost steps.
+  /// Describes the last deviation: its size and its possible cause. Names a tendon if the release of this
+  /// tendon explains most of the deviation. Such a tendon is broken or slack, or its motor lost steps.
   [[nodiscard]] std::string what() const;
-  /// Names the tendon whose release explains most of the deviation since the first observation, or returns
-  /// "" if there is none. A tendon that breaks while it carries little causes no sudden deviation.
+  /// Names the tendon whose release explains most of the deviation since the first observation, or returns ""
+  /// if there is no such tendon. It detects a tendon that breaks under a small tension, which causes no
+  /// sudden deviation.
   [[nodiscard]] std::string slow_cause() const;
 
  private:

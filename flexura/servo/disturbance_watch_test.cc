@@ -95,7 +95,7 @@ TEST(DisturbanceWatch, NamesTheTendonThatGaveWay) {
     seen.bends[tendon] *= 0.2;
     for (int i = 20; i < 24; ++i) watch.add(0.033 * i, seen, moving(2), 0.001);
     EXPECT_TRUE(watch.is_disturbed());
-    const std::string name = tendon == 0 ? "tendon 1 gave way" : "tendon 2 gave way";
+    const std::string name = tendon == 0 ? "tendon 1 were released" : "tendon 2 were released";
     EXPECT_NE(watch.what().find(name), std::string::npos) << watch.what();
     EXPECT_NE(watch.slow_cause().find(name), std::string::npos);
   }

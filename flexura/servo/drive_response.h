@@ -10,21 +10,22 @@
 namespace flexura {
 
 /// Learned matrix that maps motions of the drives to motions of the observed shape (docs/control.md, eq.
-/// 21a). The matrix is the identity if the arm follows its model. It hardly depends on the shape, unlike the
-/// derivatives of image features, so each motion improves it for all shapes. The derivatives of features with
-/// respect to the drives are their derivatives with respect to the shape, times this matrix.
+/// 21a). The matrix is the identity if the arm follows its model. The matrix hardly depends on the shape, so
+/// each motion improves it for all shapes. Derivatives of features with respect to the drives are derivatives
+/// with respect to the shape times this matrix.
 class DriveResponse {
  public:
-  /// `variables`: number of the arm's variables. With ServoJacobian::model nothing is learned.
+  /// `variables`: number of the arm's variables. With ServoJacobian::model, the matrix remains the identity.
   DriveResponse(ServoJacobian how, Eigen::Index variables);
 
-  /// Learns from the drives' reading x and the shape y observed at that time (bends in rad, stretches). Skips
-  /// values that are not finite.
+  /// Learns from the drives' measured position x and the observed shape y at the same time (bends in rad,
+  /// stretches). Skips values that are not finite.
   void learn(const Eigen::VectorXd& x, const Eigen::VectorXd& y);
   [[nodiscard]] bool is_learned() const { return !std::holds_alternative<std::monostate>(estimate_); }
   /// Returns dy/dx.
   [[nodiscard]] const Eigen::MatrixXd& matrix() const;
-  /// Returns the motion of the drives for a motion of the shape, as far as the matrix is regular.
+  /// Returns the motion of the drives that causes the motion `dy` of the shape. Ignores singular directions
+  /// of the matrix.
   [[nodiscard]] Eigen::VectorXd drives_for(const Eigen::VectorXd& dy) const;
 
  private:

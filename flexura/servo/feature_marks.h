@@ -13,26 +13,26 @@
 
 namespace flexura {
 
-/// A pixel or polyline that a law compares in a picture: measured (`seen`) and target (`desired`), px.
+/// A pixel or polyline that a law compares in a picture: the measured one (`seen`) and the target
+/// (`desired`), px.
 struct FeatureMark {
   std::vector<Eigen::Vector2d> seen, desired;
 };
 
-/// Draws what a law compares into the pictures.
+/// Draws the features that a law compares into the pictures.
 ///
 /// - `points`, `silhouettes`: the pixels of the points, or of the edges.
-/// - `chords`, `potential`: chords. Each target chord is rotated about the middle of the measured one,
-/// because
-///   the law compares only directions.
+/// - `chords`, `potential`: chords. A target chord is drawn as the measured chord, rotated about its middle,
+///   because the law compares only directions.
 /// - `moments`: the centroid and the ellipse with the second moments.
 /// - `shape`: nothing, because it compares no images.
 class FeatureMarker {
  public:
   FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points);
 
-  /// Returns the marks in both pictures of an observation, with the target at its time. Empty if the
-  /// observation gives no shape. Chords are drawn as measured in these pictures, even if the law carries
-  /// their angles by optical flow.
+  /// Returns the marks in both pictures of an observation, with the target at the observation's time. Empty
+  /// if no shape was estimated from the observation. Chords are those measured in these pictures, even if the
+  /// law tracks their angles by optical flow.
   [[nodiscard]] std::array<std::vector<FeatureMark>, 2> of(const ServoObservation& observed);
 
  private:

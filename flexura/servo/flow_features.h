@@ -14,17 +14,17 @@
 
 namespace flexura {
 
-/// Features of chords whose angles are carried from picture to picture by the optical flow at the chords'
-/// ends. The carried angles are corrected towards the angles measured in each picture (docs/servo.md, eq.
-/// 25). This is the paper's continuous measure.
+/// Features of chords whose angles are tracked from picture to picture by the optical flow at the chords'
+/// ends. The tracked angles are corrected towards the angles measured in each picture (docs/servo.md, eq.
+/// 25). This is the paper's continuous measurement.
 class FlowFeatures : public ServoFeatures {
  public:
-  /// `anchor`: time constant with which a carried angle approaches the measured one, s. `whites`: the largest
-  /// pixel values of the cameras' pictures.
+  /// `anchor`: time constant with which a tracked angle approaches the measured angle, s. `whites`: the
+  /// largest pixel values of the cameras' pictures.
   FlowFeatures(Arm arm, std::unique_ptr<ChordFeatures> chords, double anchor, std::array<int, 2> whites);
 
   void look(const ServoObservation& observed) override;
-  /// Uses the carried angles for the observation of the last look(), and for other observations the angles
+  /// For the observation of the last look(), uses the tracked angles. For other observations, uses the angles
   /// measured in their pictures.
   [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Observation, 2>& seen,
                               Eigen::VectorXd& values) override;
@@ -43,9 +43,9 @@ class FlowFeatures : public ServoFeatures {
     return chords_->secant(seen, desired, way, views, result);
   }
 
-  /// Angles of one camera's last observation, rad, from u towards v. `carried` and `measured` are angles of
-  /// the chords' images. `turns` are their changes since the previous observation according to the flow. They
-  /// are NaN where the flow is missing and at the first observation.
+  /// Angles of one camera's last observation, rad, from u towards v. `carried` and `measured` are the tracked
+  /// and the measured angles of the chords' images. `turns` are the angles' changes since the previous
+  /// observation according to the flow. They are NaN where the flow is missing and at the first observation.
   struct Angles {
     std::vector<double> carried, measured, turns;
   };

@@ -7,13 +7,13 @@
 
 namespace flexura {
 
-/// Weight of a stretch of 1 among features in px and among features in rad. The weight in px is about the
-/// motion of a section's end.
+/// Weight of a stretch of 1 among features in px and among features in rad. The weight in px is approximately
+/// the image motion of a section's end.
 inline constexpr double stretch_px = 100, stretch_rad = 1;
 
 /// Returns `features` extended by each section's stretch as estimated from the pictures. A stretch of 1
-/// counts as `weight` in the features' unit. It is for features with little information on lengths; angles
-/// have none. If the arm cannot stretch, returns `features` unchanged.
+/// counts as `weight` in the features' unit. It is meant for features that depend little on lengths, or not
+/// at all like angles. If the arm cannot stretch, returns `features` unchanged.
 [[nodiscard]] std::unique_ptr<ServoFeatures> with_lengths(std::unique_ptr<ServoFeatures> features,
                                                           const Arm& arm, double weight);
 

@@ -12,18 +12,18 @@
 
 namespace flexura {
 
-/// Laws of a servo that predict the arm's motion by its model, swing included.
+/// Laws of a servo that predict the arm's motion, including its oscillation, with a model.
 class ModelLaw {
  public:
-  /// `config.law` must be such a law (predicts_motion).
+  /// predicts_motion(config.law) must be true.
   ModelLaw(const ArmModel& model, const ServoConfig& config);
 
-  /// Times of a step, s: of the rig's clock, and since the servo's start.
+  /// Time of a step by the rig's clock, and since the servo's start, s.
   struct Times {
     double now = 0, since_start = 0;
   };
-  /// Returns the law's command for the next step, from the last observation. `sent` and `before`: the last
-  /// two commands.
+  /// Returns the law's command for the next step, based on the last observation. `sent` and `before`: the
+  /// last two commands.
   [[nodiscard]] ArmState command(const Times& times, const ArmState& sent, const ArmState& before,
                                  const ShapeObserver& observer, const ServoGoals& goals);
 

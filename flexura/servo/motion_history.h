@@ -8,15 +8,15 @@
 
 namespace flexura {
 
-/// Recent readings of a device, to interpolate its value at the time of a picture. `blend(a, b, share)`
-/// returns the value at that fraction of the way from a to b.
+/// Recent readings of a device, for interpolation at the time of a picture. `blend(a, b, share)` returns the
+/// value at the fraction `share` of the way from a to b.
 template <class Value, class Blend>
 class MotionHistory {
  public:
-  /// Drops readings older than `span` s before the newest, except one.
+  /// Keeps the readings of the last `span` s before the newest one, and one older reading.
   MotionHistory(double span, Blend blend) : span_(span), blend_(std::move(blend)) {}
 
-  /// Skips a reading that is not newer than the last one.
+  /// Adds a reading. Skips it if it is not newer than the last one.
   void add(double time, Value value) {
     if (!readings_.empty() && !(time > readings_.back().first)) return;
     readings_.emplace_back(time, std::move(value));
@@ -39,8 +39,9 @@ class MotionHistory {
 
   [[nodiscard]] bool is_empty() const { return readings_.empty(); }
 
-  /// Returns the linear interpolation between two readings; the first reading before all of them, the last
-  /// one after. Returns std::nullopt if there is no reading.
+  /// Returns the value at `time`, s, by linear interpolation between two readings. Before the first reading
+  /// it returns the first one, after the last reading the last one. Returns std::nullopt if there is no
+  /// reading.
   [[nodiscard]] std::optional<Value> at(double time) const {
     if (readings_.empty()) return std::nullopt;
     const auto after = std::ranges::upper_bound(readings_, time, {}, &std::pair<double, Value>::first);

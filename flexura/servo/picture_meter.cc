@@ -38,7 +38,7 @@ ServoObservation PictureMeter::measure(const PicturePair& pair) {
   if (are_enough(observed.seen)) return observed;
   for (std::size_t i = 0; i < 2; ++i)
     if (observed.reasons[i].empty() && !are_enough({&observed.seen[i], 1}))
-      observed.reasons[i] = "too small a part of the arm is seen";
+      observed.reasons[i] = "too small a part of the arm is visible";
   return observed;
 }
 

@@ -12,15 +12,15 @@
 
 namespace flexura {
 
-/// Limits of a predictive servo besides bends and rates, linear about the present command: tensions that the
-/// motors can hold, clearances from obstacles and of the arm from itself, and the borders of the pictures
-/// (docs/control.md, "Predictive law").
+/// Limits of a predictive servo in addition to those of bends and rates, linearised about the present
+/// command. They limit tensions to what the motors can hold, keep the arm clear of obstacles and of itself,
+/// and keep it within the pictures (docs/control.md, "Predictive law").
 class PredictiveLimits {
  public:
   PredictiveLimits(ArmModel model, const ServoConfig& config);
 
-  /// Returns the limits. `sent`: last command. `rest`: shape that the arm has at rest under it. `by_command`:
-  /// derivative of this shape with respect to the command. `views`: of the two cameras.
+  /// Returns the limits. `sent`: last command. `rest`: shape of the arm at rest under this command.
+  /// `by_command`: derivative of this shape with respect to the command. `views`: views of the two cameras.
   [[nodiscard]] std::vector<PredictiveLimit> find(const ArmState& sent, const ArmState& rest,
                                                   const Eigen::MatrixXd& by_command,
                                                   const std::array<View, 2>& views) const;

@@ -25,12 +25,12 @@ struct PicturePair {
 };
 
 /// Reads a rig's devices: the newest two simultaneous pictures, and the readings of arm, heads and stages at
-/// their time.
+/// the time of the pictures.
 class RigReader {
  public:
   struct Times {
     double span = 0;      ///< Time for which readings are kept, s.
-    double together = 0;  ///< Largest time between two pictures that count as simultaneous, s.
+    double together = 0;  ///< Largest time difference between two pictures that count as simultaneous, s.
     double silent = 0;    ///< Age of a reading beyond which the device counts as silent, s.
   };
   /// `nominal` must outlive this object.
@@ -38,21 +38,22 @@ class RigReader {
             const Times& times);
 
   using Error = std::optional<std::string>;
-  /// Reads arm, heads and stages. Returns an error if a reading is missing (rig_readings.h), or its time is
-  /// in the future or too old.
+  /// Reads arm, heads and stages. Returns an error if a reading is missing (rig_readings.h) or too old, or if
+  /// its time is in the future.
   [[nodiscard]] Error read();
   /// Requests pictures from the cameras. Returns a new pair of pictures, if there is one. A picture is
   /// refused if its timestamp is not finite, in the future, or out of order. If a camera did not answer or
   /// its picture was refused, silence() returns the reason.
   [[nodiscard]] std::optional<PicturePair> newest_pair();
-  /// Returns the name of a camera that gave no picture at the last request, with the reason, or "" if both
-  /// gave one.
+  /// If a camera delivered no picture at the last request, returns the camera's name with the reason;
+  /// otherwise "".
   [[nodiscard]] std::string silence() const;
-  /// Returns the reason why there is no pair of pictures: the cameras without a picture since the time
+  /// Returns the reason why there is no pair of pictures. Names the cameras without a picture since the time
   /// `since`, s.
   [[nodiscard]] std::string no_pair(double since) const;
 
-  /// measured() returns the drives' reading at a time, a command; nominal() the model's shape for it.
+  /// measured() returns the measured position of the drives at a time, in terms of a command. nominal()
+  /// returns the model's shape for this position.
   [[nodiscard]] ArmState measured(double time) const { return *arm_.at(time); }
   [[nodiscard]] ArmState nominal(double time) const { return model_.bent(measured(time)); }
   /// Returns the times of the drives' readings after `from` and before `to`, s, in order.
@@ -63,7 +64,7 @@ class RigReader {
   [[nodiscard]] double newest_reading() const { return arm_.newest(); }
   /// Returns the nominal views of the cameras at a time.
   [[nodiscard]] std::array<View, 2> views(double time) const { return {view(0, time), view(1, time)}; }
-  /// Returns the axis positions that a camera's head and stage reported.
+  /// Returns the axis positions that the head and stage of camera i reported for `time`, s.
   [[nodiscard]] CameraStance stance(std::size_t i, double time) const { return *stances_[i].at(time); }
 
   [[nodiscard]] double now() const { return ports_.clock->now(); }
@@ -71,7 +72,7 @@ class RigReader {
   /// Returns the port of one of the two cameras.
   [[nodiscard]] const CameraPorts& camera(std::size_t i) const { return ports_.cameras[cameras_[i]]; }
   [[nodiscard]] const std::string& name(std::size_t i) const { return camera(i).name; }
-  /// Returns `reason` with the cameras' names instead of the estimator's picture numbers.
+  /// Returns `reason` with the estimator's picture numbers replaced by the cameras' names.
   [[nodiscard]] std::string by_name(std::string reason) const;
 
  private:

@@ -18,8 +18,8 @@ const Table<ServoCameraPrior>& fields_of(const ServoCameraPrior*) {
   static const auto table =
       Table<ServoCameraPrior>(
           "camera_prior",
-          "Prior standard deviations of the camera models. The servo estimates their errors "
-          "with the arm's shape; 0: exact.")
+          "Prior standard deviations of the camera models. The servo estimates errors of the camera models "
+          "together with the arm's shape; with 0, the model counts as exact.")
           .field("rotation_std", static_cast<double ServoCameraPrior::*>(&ServoCameraPrior::rotation_std),
                  {.meaning = "Standard deviation of a camera's orientation, about each axis of its view.",
                   .unit = Unit::radian,
@@ -49,11 +49,11 @@ const std::vector<std::string>& names_of(const ServoJacobian*) {
 }
 
 void check_servo(const ServoConfig& config) {
-  require(!config.goals.empty(), "a servo needs a goal");
+  require(!config.goals.empty(), "a servo needs at least one target");
   double before = 0;
   for (const ServoGoal& goal : config.goals) {
     require(&goal == &config.goals.front() ? goal.time >= 0 : goal.time > before,
-            "the times of a servo's goals must increase from 0");
+            "the times of a servo's targets must increase from 0");
     before = goal.time;
   }
   require(config.measure == ServoMeasure::picture || has_chords(config.law),

@@ -9,11 +9,11 @@
 
 namespace flexura {
 
-/// Returns the distances between corresponding points of two shapes, at equal shares of their lengths from
-/// base to tip, m.
+/// Returns the distances between corresponding points of two shapes, m. Corresponding points are at equal
+/// shares of the shapes' lengths, from base to tip.
 [[nodiscard]] std::array<double, 51> shape_distances(const Backbone& shape, const Backbone& desired);
 
-/// Distance of a shape from another one, by shape_distances(), as shares of the arm's length.
+/// Distance between two shapes by shape_distances(), as shares of the arm's length.
 struct ServoError {
   double rms = 0, most = 0, tip = 0;  ///< Root mean square along the arm, maximum, and distance at the tip.
 };
@@ -21,15 +21,15 @@ struct ServoError {
 [[nodiscard]] ServoError servo_error(const Backbone& shape, const Backbone& desired, double length);
 [[nodiscard]] ServoError servo_error(const Arm& arm, const ArmState& shape, const ArmState& desired);
 
-/// Errors of the recent past, for their mean.
+/// Mean of recent errors.
 class LateErrors {
  public:
-  /// Drops errors that are older than the newest one by more than `span`, s.
+  /// The mean includes the errors of the last `span` s before the newest one.
   explicit LateErrors(double span) : span_(span) {}
 
-  /// Adds an error. `time`: s, at least that of the previous error.
+  /// Adds an error. `time`, s, must not be before that of the previous error.
   void add(double time, const ServoError& error);
-  /// Returns the mean of the kept errors, or std::nullopt before the first error.
+  /// Returns the mean of the recent errors; std::nullopt before the first error.
   [[nodiscard]] std::optional<ServoError> mean() const;
 
  private:

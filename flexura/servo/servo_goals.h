@@ -18,24 +18,24 @@ namespace flexura {
 /// The target shape at one time.
 struct TargetShape {
   ArmState state;
-  /// Difference between the recorded pictures' features and those of `state` for nominal cameras; empty:
+  /// Features in the target's recorded pictures minus the features of `state` for nominal cameras; empty:
   /// zero.
   Eigen::VectorXd offset;
 };
 
-/// Target shapes of a servo over time. A target given as recorded pictures is measured once, with the cameras
+/// Target shapes of a servo over time. A target given by recorded pictures is measured once, with the cameras
 /// at their current axis positions.
 class ServoGoals {
  public:
-  /// Measures recorded pictures. problem() then returns the reason why the targets are unusable, or "".
+  /// Measures recorded pictures. Afterwards problem() returns why the targets are unusable, or "".
   ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, PictureMeter& meter,
              ShapeObserver& observer, ServoFeatures& features, const std::array<View, 2>& views);
 
   [[nodiscard]] const std::string& problem() const { return problem_; }
   /// Returns the time of the last target, s from the servo's start.
   [[nodiscard]] double last() const { return times_.back(); }
-  /// Returns the target at a time, linearly interpolated between the given targets. Before the first target
-  /// it is the first one.
+  /// Returns the target at a time, linearly interpolated between the given targets. Before the first target,
+  /// it returns the first one.
   [[nodiscard]] TargetShape at(double time) const;
 
  private:

@@ -47,8 +47,8 @@ void ServoJudge::add_error(const ServoStep& step) {
   } else if (!worse_since_) {
     worse_since_ = time;
   } else if (time - *worse_since_ > patience) {
-    failure_ = fmt::format("diverging: the error is {:.2g} % of the length, after {:.2g} %", 100 * latest_,
-                           100 * best_);
+    failure_ = fmt::format("diverging: the error has grown to {:.2g} % of the length from {:.2g} %",
+                           100 * latest_, 100 * best_);
     // If the arm may not turn as fast as the law requests, it passes the target again and again.
     if (limited_for_ > 0) *failure_ += fmt::format("; limited by {}", limited_by_);
   }

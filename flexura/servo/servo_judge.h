@@ -22,7 +22,7 @@ class ServoJudge {
   void add(const ServoStep& step);
 
   [[nodiscard]] bool is_done() const { return is_done_; }
-  /// Returns the reason to end the servo; std::nullopt while the target can still be reached.
+  /// Returns why the servo must end as failed; std::nullopt while it can still reach the target.
   [[nodiscard]] const std::optional<std::string>& failure() const { return failure_; }
 
  private:
@@ -42,7 +42,7 @@ class ServoJudge {
   bool is_singular_ = false;
 };
 
-/// Statistics of a servo's steps, updated with each step. Keeps only the errors of the last `settle` s.
+/// Statistics of a servo's steps, updated with each step. Its memory does not grow with the number of steps.
 class ServoTally {
  public:
   /// `begun`: start of the session, s. `last_goal`: time of the last target, s after `begun`. `arm` must

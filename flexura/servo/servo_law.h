@@ -14,7 +14,7 @@
 
 namespace flexura {
 
-/// Computes the arm's next command from observations: damped least squares on the features of a law
+/// Computes the arm's next command from observations, by damped least squares on the features of a law
 /// (docs/servo.md).
 class ServoLaw {
  public:
@@ -25,7 +25,7 @@ class ServoLaw {
   struct Input {
     const ServoObservation& observed;  ///< Last observation of the arm.
     bool is_fresh = false;             ///< Whether the observation is new since the last step.
-    const ArmState& measured;          ///< Drives' reading at the time of the observation.
+    const ArmState& measured;          ///< Measured position of the drives at the time of the observation.
     const ArmState& sent;              ///< The last command.
     const TargetShape& then;           ///< Target at the time of the observation.
     const TargetShape& desired;        ///< Current target.
@@ -33,10 +33,10 @@ class ServoLaw {
   };
   struct Output {
     ArmState asked;
-    double potential = 0;  ///< Half the squared error at the time of the observation.
+    double potential = 0;  ///< Half the squared feature error at the time of the observation.
     bool is_singular = false;
   };
-  /// Returns the next command. It is the last command if the observation gives no error.
+  /// Returns the next command. Returns the last command if no error can be computed from the observation.
   [[nodiscard]] Output step(const Input& input);
 
  private:

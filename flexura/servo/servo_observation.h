@@ -15,15 +15,14 @@ namespace flexura {
 struct ServoObservation {
   double time = 0;   ///< Middle of the exposures, s.
   ArmState desired;  ///< Target at the time of the observation.
-  /// Offset of the features in a target's recorded pictures from those that nominal cameras would observe;
-  /// empty: zero.
+  /// Features in the target's recorded pictures minus those that nominal cameras would observe; empty: zero.
   Eigen::VectorXd desired_offset;
   std::array<Frame, 2> frames;  ///< Frames of both cameras.
   std::array<Observation, 2>
-      seen;  ///< Measured arm in each picture; the views are corrected by their estimated errors.
+      seen;                ///< Measured arm in each picture. The views include the estimated camera errors.
   ShapeEstimate estimate;  ///< Estimated shape of the arm at the time of the observation.
-  /// Shape of the arm without its swing about the equilibrium. For an arm that does not swing it equals the
-  /// shape of `estimate`.
+  /// Equilibrium shape of the arm, without its oscillation. For an arm without dynamics, it equals the shape
+  /// of `estimate`.
   ArmState rest;
   std::array<std::string, 2> reasons;  ///< Reason why a picture shows no arm, or "".
 };

@@ -90,8 +90,8 @@ class Session {
     result_.first = observer_.first(), result_.last = observer_.last();
     if (result_.last) result_.sigma = observer_.sigma_of_last();
     if (result_.missed_steps > 0)
-      watcher_.reported(rig_.now(),
-                        fmt::format("{} steps of {:.4g} s were missed", result_.missed_steps, config_.step));
+      watcher_.reported(rig_.now(), fmt::format("{} control steps of {:.4g} s were missed",
+                                                result_.missed_steps, config_.step));
     tally_->finish(result_);
     return std::move(result_);
   }
@@ -110,7 +110,7 @@ class Session {
   RigReader::Error begin() {
     for (std::size_t i = 0; config_.follow && i < 2; ++i)
       if (const std::string why = missing_head(rig_.camera(i)); !why.empty())
-        return why + ", and this servo follows the arm with both cameras";
+        return why + ", and the servo needs both heads to follow the arm";
     if (auto error = rig_.read()) return error;
     std::size_t farthest = 0;
     for (std::size_t i = 0; i < config_.goals.size(); ++i) {
@@ -119,7 +119,7 @@ class Session {
     }
     if (result_.missed > config_.tolerance)
       return fmt::format(
-          "not reachable: the nearest shape of this arm stays {:.3g} % of its length away from target {}",
+          "not reachable: the nearest shape of this arm is {:.3g} % of its length away from target {}",
           100 * result_.missed, farthest + 1);
     goals_.emplace(config_.goals, model_.arm, meter_, observer_, *features_, rig_.views(result_.start));
     if (!goals_->problem().empty()) return goals_->problem();
@@ -169,9 +169,9 @@ class Session {
     if (!(passed < most)) passed = 0, fault("the clock's time is out of range for a servo");
     const long next = std::max(ticks_ + 1, static_cast<long>(passed));
     if (next > ticks_ + 1 && result_.missed_steps == 0)
-      watcher_.reported(
-          rig_.now(),
-          fmt::format("a step took longer than {:.4g} s: the missed steps are skipped", config_.step));
+      watcher_.reported(rig_.now(),
+                        fmt::format("a control step took longer than {:.4g} s: the missed steps are skipped",
+                                    config_.step));
     if (next > ticks_ + 1) sent_before_ = sent_;  // The arm has stopped meanwhile.
     result_.missed_steps += next - ticks_ - 1;
     ticks_ = next;
@@ -204,7 +204,7 @@ class Session {
       report_unseen(now, no_shape(*observed));
       return false;
     }
-    if (!unseen_because_.empty() && was_seen) watcher_.reported(now, "the arm is seen again");
+    if (!unseen_because_.empty() && was_seen) watcher_.reported(now, "the arm is visible again");
     unseen_because_.clear();
     return true;
   }

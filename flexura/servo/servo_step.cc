@@ -142,11 +142,12 @@ struct Limited {
 
 const Table<HeadCommand>& fields_of(const HeadCommand*) {
   using M = HeadCommand;
-  static const auto table = Table<M>("flexura.HeadCommand", "Command of a camera's head.")
-                                .field("camera", &M::camera, {.meaning = "Name of the camera."})
-                                .field("pan", &M::pan, {.meaning = "Pan, rad, to the camera's left."})
-                                .field("tilt", &M::tilt, {.meaning = "Tilt, rad, upwards."})
-                                .field("zoom", &M::zoom, {.meaning = "Zoom, as a ratio or a motor count."});
+  static const auto table =
+      Table<M>("flexura.HeadCommand", "Command of a camera's head.")
+          .field("camera", &M::camera, {.meaning = "Name of the camera."})
+          .field("pan", &M::pan, {.meaning = "Pan, rad, to the camera's left."})
+          .field("tilt", &M::tilt, {.meaning = "Tilt, rad, upwards."})
+          .field("zoom", &M::zoom, {.meaning = "Zoom, as a ratio or as a motor position."});
   return table;
 }
 

@@ -15,7 +15,7 @@ namespace flexura {
 struct HeadCommand {
   std::string camera;        ///< Name of the camera.
   double pan = 0, tilt = 0;  ///< rad
-  double zoom = 0;           ///< Position in the lens's table.
+  double zoom = 0;           ///< Zoom: position in the lens's zoom table.
 };
 
 /// True shape of the arm, if it is known.
@@ -25,21 +25,20 @@ struct TrueShape {
   ServoError error;                    ///< Error relative to the target.
 };
 
-/// One command of a servo and its inputs. It is used in the loop and written to the log (flexura.ServoStep,
-/// topic /servo/steps).
+/// One command of a servo, and its inputs. The log has it as flexura.ServoStep on the topic /servo/steps.
 struct ServoStep {
   double time = 0;                  ///< Time of the command, s.
   std::optional<double> seen_at;    ///< Time of the observation used, s; empty before the first observation.
   ArmState desired;                 ///< Target at the time of the observation.
   std::optional<ArmState> seen;     ///< Shape estimated from the observation.
-  ArmState sent;                    ///< Command of the limiter to the drives.
+  ArmState sent;                    ///< Command to the drives, after the limiter.
   std::vector<HeadCommand> heads;   ///< Commands of the heads in this step.
   std::vector<double> lengths;      ///< Nominal lengths of the unstretched sections, m.
   std::optional<ServoError> error;  ///< Error of the observed shape relative to the target.
-  /// True shape at the time of the observation. Unknown to the servo; the simulator of the rig adds it.
+  /// True shape at the time of the observation. The simulator of the rig adds it; the servo does not know it.
   std::optional<TrueShape> truth;
-  /// Half the squared error of the law: a Lyapunov function if the arm follows its commands. Its unit is
-  /// rad^2 for the laws `shape` and `potential`, otherwise px^2 (docs/servo.md).
+  /// Half the squared error of the law. It is a Lyapunov function if the arm follows its commands. Its unit
+  /// is rad^2 for the laws `shape` and `potential`, otherwise px^2 (docs/servo.md).
   double potential = 0;
   bool is_fresh = false;     ///< Whether the observation is new since the last step.
   bool is_singular = false;  ///< Whether the law is singular: some motion of the arm changes no feature.
@@ -48,7 +47,7 @@ struct ServoStep {
   // The following members are not in logs.
   double sigma =
       0;  ///< Standard deviation of the observed shape, root mean square along the arm, share of its length.
-  /// Error of the shape expected after all commands so far, relative to the target at the time of this
+  /// Error of the predicted shape after all previous commands, relative to the target at the time of this
   /// command.
   std::optional<ServoError> ahead;
 };

@@ -116,7 +116,7 @@ void ShapeObserver::estimate_alone(ServoObservation& observed) {
 void ShapeObserver::estimate(ServoObservation& observed, const std::optional<ArmState>& expected,
                              const SwingPath& path) {
   if (!are_enough(observed.seen)) {
-    observed.estimate.reason = "the arm is not seen in every image";
+    observed.estimate.reason = "the arm is not visible in every image";
     return;
   }
   observed.estimate = shape_of(observed, expected, path);

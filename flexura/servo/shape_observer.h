@@ -16,24 +16,25 @@
 
 namespace flexura {
 
-/// State observer of the arm. It estimates the shape from measured pictures and the drives' motion since
-/// then, and counts the time without observations.
+/// State observer of the arm. It estimates the shape from measured pictures and the drives' motion after
+/// them. It also measures the time without observations.
 class ShapeObserver {
  public:
-  /// `rig` reports the drives' motion. It and `nominal` must outlive this object.
+  /// `rig` reports the drives' motion. `rig` and `nominal` must outlive this object.
   ShapeObserver(const RigReader& rig, const RigModel& nominal, const ServoConfig& config);
 
-  /// Starts to count the time without observations at `time`, s of the rig's clock.
+  /// Starts to measure the time without observations at `time`, s of the rig's clock.
   void begin(double time) { seen_since_ = time; }
-  /// Estimates the arm's shape at the observation's time. `now`: current time, s of the rig's clock. If the
-  /// shape is found, returns true, and last() becomes this observation. Its views are then corrected by the
-  /// errors estimated with the shape. Returns false if no shape is found, for example if a picture shows no
+  /// Estimates the arm's shape at the observation's time. `now`: current time, s of the rig's clock. If it
+  /// finds the shape, it returns true, corrects the observation's views by the estimated camera errors, and
+  /// last() becomes this observation. Returns false if it finds no shape, for example if a picture shows no
   /// arm.
   bool observe(const std::shared_ptr<ServoObservation>& observed, double now);
-  /// Estimates the shape from these pictures alone, without a prediction. Resets the tracker before and
+  /// Estimates the shape from only these pictures, without a prediction. Resets the tracker before and
   /// afterwards.
   void estimate_alone(ServoObservation& observed);
-  /// Returns the shape estimated from the observation's measurements, with `views` taken as exact.
+  /// Returns the shape estimated from the observation's measurements under the assumption that `views` are
+  /// exact.
   [[nodiscard]] ShapeEstimate with_nominal_views(const ServoObservation& observed,
                                                  const std::array<View, 2>& views) const;
 
@@ -41,25 +42,26 @@ class ShapeObserver {
   [[nodiscard]] const std::shared_ptr<const ServoObservation>& first() const { return first_; }
   /// Returns the newest observation with a shape; null before the first.
   [[nodiscard]] const std::shared_ptr<const ServoObservation>& last() const { return last_; }
-  /// Returns the time since an observation last gave a shape, s.
+  /// Returns the time since the last observation with a shape, s.
   [[nodiscard]] double blind_for(double now) const { return now - seen_since_; }
   [[nodiscard]] double seen_since() const { return seen_since_; }
 
-  /// Returns the expected shape of the arm at rest: the last estimate without its swing, plus the drives'
-  /// motion since then. `driven`: the model's shape for the drives' position.
+  /// Returns the expected equilibrium shape of the arm: the last estimate without oscillation, changed by the
+  /// drives' motion since then. `driven`: the model's shape for the drives' position.
   [[nodiscard]] ArmState expected(ArmState driven) const;
-  /// Returns the swing of the arm at the last observation; not tracked for an arm that does not swing.
+  /// Returns the oscillation of the arm at the last observation. It is not tracked for an arm without
+  /// dynamics.
   [[nodiscard]] const SwingFilter& swing() const { return tracker_.swing(); }
-  /// Returns the motion of the drives from the last observation until `time`, s, by their readings, with
-  /// kicks of these modes.
+  /// Returns the motion of the drives from the last observation until `time`, s, according to their readings.
+  /// It includes the excitation of these modes by the motion.
   [[nodiscard]] SwingPath path_until(double time, const std::vector<SwingMode>& modes) const;
-  /// Returns the standard deviation of the last shape from the pictures' noise, root mean square along the
-  /// arm, share of its length. It does not include errors of cameras without a prior, which are equal in
+  /// Returns the standard deviation of the last shape due to the pictures' noise: root mean square along the
+  /// arm, share of its length. It does not include errors of cameras without a prior; these are equal in
   /// every picture.
   [[nodiscard]] double sigma() const;
-  /// Returns the standard deviation of the last shape from the last pictures alone, without earlier pictures.
-  /// The filter assumes independent errors in successive pictures. For an arm at rest the errors are equal in
-  /// all pictures and do not average. Then sigma() is too small, by a factor of several if camera errors are
+  /// Returns the standard deviation of the last shape if only the last pictures are used. The filter behind
+  /// sigma() assumes independent errors in successive pictures. For an arm at rest, the errors are equal in
+  /// all pictures and do not average out. Then sigma() is several times too small if camera errors are
   /// estimated, and sigma_of_last() is correct.
   [[nodiscard]] double sigma_of_last() const;
 

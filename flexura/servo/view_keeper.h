@@ -11,15 +11,15 @@
 
 namespace flexura {
 
-/// Keeps an arm in the pictures of two cameras by commands of their heads.
+/// Keeps an arm in the pictures of two cameras by commands to their heads.
 class ViewKeeper {
  public:
   ViewKeeper(const RigModel& nominal, const std::array<std::size_t, 2>& cameras);
 
-  /// Returns the command for the head of camera i (0 or 1), whose position is `stands`. It brings the middle
-  /// of the arm's image to the picture's middle, with a zoom that shows the whole arm. `view` is the camera's
-  /// current view, `state` the shape of the arm. Returns std::nullopt while the arm's image is well inside
-  /// the picture. Respects the head's limits.
+  /// Returns the command for the head of camera i (0 or 1), whose position is `stands`. The command moves the
+  /// middle of the arm's image to the picture's middle, with a zoom that shows the whole arm. `view`: the
+  /// camera's current view. `state`: the shape of the arm. Returns std::nullopt while the arm's image is well
+  /// inside the picture. Respects the head's limits.
   [[nodiscard]] std::optional<HeadState> turned(std::size_t i, const ArmState& state, const HeadState& stands,
                                                 const View& view) const;
 

@@ -14,34 +14,34 @@
 
 namespace flexura {
 
-/// An arm as an elastic rod, with its loads and what affects its motion.
+/// An arm as an elastic rod, with its loads and the settings of its motion.
 struct ArmRod {
   Rod rod;
   RodLoads loads;
   std::vector<TendonBreak> breaks = {};
-  /// Time step of the motion, s. Missing: the arm has no inertia, and the fields below are empty.
+  /// Time step of the motion, s. Missing: the arm has no inertia, and the following fields are empty.
   std::optional<double> time_step = {};
-  double spectral_radius = 0.1;  ///< RodDynamicsConfig::spectral_radius.
+  double spectral_radius = 0.1;  ///< Value of RodDynamicsConfig::spectral_radius.
   std::optional<RodContactConfig> contact = {};
   std::optional<RodDragConfig> drag = {};
-  /// A mass that the arm carries for a time.
+  /// A mass that the arm carries temporarily.
   struct Payload {
     RodPayload payload;
-    double from = 0, until = 0;  ///< Start and end of carrying it, s.
+    double from = 0, until = 0;  ///< Times at which the arm picks up and drops the payload, s.
   };
   std::vector<Payload> payloads = {};
 };
 
 /// An arm, its drive and its initial state, for a simulation.
 struct ArmSetup {
-  /// Builds the arm, its drive and its initial state from `config`. Errors as arm_state()
+  /// Builds the arm, its drive and its initial state from `config`. Throws the exceptions of arm_state()
   /// (kinematics/shape.h).
   explicit ArmSetup(const RigConfig& config);
 
   Arm arm;
   ArmState initial;            ///< Initial state.
-  std::optional<Drive> drive;  ///< Missing: the sections bend at their own rates.
-  /// The rod if the arm's mechanics are static or dynamic. Missing: sections are arcs.
+  std::optional<Drive> drive;  ///< Drive of the arm; missing: the sections bend at their own rates.
+  /// The rod of a static or dynamic arm; missing: sections are arcs.
   std::optional<ArmRod> rod;
 };
 

@@ -45,13 +45,13 @@ double BendMotion::end() const {
 
 void BendMotion::command(double time, const ArmState& target, double duration) {
   if (target.bends.size() != sections_.size() || target.stretches.size() != sections_.size())
-    throw std::invalid_argument(fmt::format("a shape of {} sections for an arm of {} sections",
-                                            target.bends.size(), sections_.size()));
+    throw std::invalid_argument(
+        fmt::format("the shape has {} sections, but the arm has {}", target.bends.size(), sections_.size()));
   ArmState inside = target;
   for (std::size_t i = 0; i < sections_.size(); ++i) {
     const double bend = inside.bends[i].norm();
     if (!std::isfinite(bend) || !std::isfinite(inside.stretches[i]))
-      throw std::invalid_argument("a shape with numbers that are not finite");
+      throw std::invalid_argument("the shape has numbers that are not finite");
     if (bend > sections_[i].max_bend) inside.bends[i] *= sections_[i].max_bend / bend;
     const auto [least, most] = sections_[i].stretch_limits;
     inside.stretches[i] = std::clamp(inside.stretches[i], least, most);
@@ -64,8 +64,8 @@ void BendMotion::halt(double time) { go(time, at(time), 0); }
 void BendMotion::go(double time, ArmState target, double duration) {
   if (!std::isfinite(time) || time < plans_.back().start)
     throw std::invalid_argument(
-        fmt::format("a command at {} s: expected a time not before that of the last command, {} s", time,
-                    plans_.back().start));
+        fmt::format("a command at {} s: expected a time that is not before that of the last command, {} s",
+                    time, plans_.back().start));
   Plan plan{time, at(time), std::move(target), {}};
   for (std::size_t i = 0; i < sections_.size(); ++i)
     plan.durations.push_back(

@@ -8,16 +8,17 @@
 namespace flexura {
 
 /// Motion of an arm without drives, whose sections bend as commanded. Each section moves at constant rates to
-/// its target in the given time, or at its largest bend rate if that time is too short. Its stretch takes the
-/// same time. Like AxisMotion, it is a function of time and of the commands up to that time.
+/// its target in the given time, or at its largest bend rate if that time is too short. The section's stretch
+/// takes this time too. Like AxisMotion, the motion is a function of time and of the commands up to this
+/// time.
 class BendMotion {
  public:
-  /// Starts at rest in `start`. Queries are allowed back to `horizon` s before the last command.
+  /// Starts at rest in the state `start`. Queries are allowed back to `horizon` s before the last command.
   BendMotion(const Arm& arm, const ArmState& start, double horizon);
 
-  /// From `time` on, moves to the shape nearest to `target` within the sections' limits. The motion takes
-  /// `duration` s, or longer if needed. Throws std::invalid_argument if `time` is before the last command, or
-  /// if `target` does not fit the arm.
+  /// Commands a motion that begins at `time` and ends at the shape nearest to `target` within the sections'
+  /// limits. It takes `duration` s, or longer if needed. Throws std::invalid_argument if `time` is before the
+  /// last command, or if `target` does not fit the arm.
   void command(double time, const ArmState& target, double duration);
   void halt(double time);
 

@@ -7,17 +7,17 @@
 
 namespace flexura {
 
-/// Place at which an arm would start so deep in an obstacle that contact cannot push it out.
+/// A point of an arm that would start so deep in an obstacle that contact cannot push the arm out.
 struct DeepStart {
-  std::size_t obstacle = 0;  ///< Index in RigConfig::obstacles of the truth.
-  double s_rest = 0;         ///< Deepest place on the arm: arc length from the base at rest, m.
-  double depth = 0;          ///< Depth of the arm's surface there, m.
+  std::size_t obstacle = 0;  ///< Index of the obstacle in the truth's RigConfig::obstacles.
+  double s_rest = 0;         ///< Deepest point of the arm: arc length from the base at rest, m.
+  double depth = 0;          ///< Depth of the arm's surface at this point, m.
 };
 
-/// Returns the deepest place at which the centerline of the true arm is inside an obstacle when a simulation
-/// starts. Contact pushes towards the nearest side of the obstacle, so it may push such an arm further in
-/// (docs/mechanics.md, "Contact"). Returns std::nullopt if there is no such place or no initial equilibrium,
-/// or if the true arm has no inertia or no contact. `model` and `truth` as for SimulatedRig. Throws
+/// Returns the deepest point of the true arm's centerline inside an obstacle when a simulation starts.
+/// Contact pushes towards the nearest side of the obstacle, so it may push such an arm further in
+/// (docs/mechanics.md, "Contact"). Returns std::nullopt if there is no such point or no initial equilibrium,
+/// or if the true arm has no inertia or no contact. `model` and `truth` are as for SimulatedRig. Throws
 /// std::invalid_argument if one of them is not a valid arm.
 [[nodiscard]] std::optional<DeepStart> deep_start(const RigConfig& model, const RigConfig& truth);
 

@@ -259,7 +259,7 @@ Backbone DynamicPlant::backbone(double time) const {
     return tube().backbone(q, inputs().rest_stretches(time));
   } catch (const std::invalid_argument&) {
     throw SimulationError(fmt::format(
-        "at {:.4f} s the motion of the arm diverges: it bends more sharply than an arm can", time));
+        "at {:.4f} s the motion of the arm diverges: its curvature is larger than possible", time));
   }
 }
 

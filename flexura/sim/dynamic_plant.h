@@ -20,17 +20,18 @@
 namespace flexura {
 
 /// A plant whose arm is an elastic rod with inertia (docs/mechanics.md, "In time"). Tendons, weight and loads
-/// act on the arm, and it swings. Its ArmRod defines contact with obstacles and the drag of a fluid.
+/// act on the arm, which can oscillate. Its ArmRod defines contact with obstacles and the drag of a fluid.
 ///
-/// The arm starts at rest and is computed in steps of ArmRod::time_step from time 0 on. Each step uses the
-/// commands that hold during the step. At a time between two steps, the state is that after a shorter step.
-/// The shape is so only until the end of the step is computed; from then on it is interpolated, which differs
-/// by about the error of a step (backbone()). A step is cut where a payload is picked up or dropped, a tendon
-/// breaks, or the weight is switched. Motors lose steps as described for RotorState. Throws SimulationError
-/// if a step does not converge even when divided.
+/// The arm starts at rest, and its motion is computed in steps of ArmRod::time_step from time 0. Each step
+/// uses the commands that are valid during the step. The state at a time between two steps is computed by a
+/// shorter step. Once the end of the step has been computed, backbone() interpolates the shape instead; the
+/// difference is about the error of a step. Steps are divided when a payload is picked up or dropped, a
+/// tendon breaks, or the weight is switched. Motors lose steps as described for RotorState. Throws
+/// SimulationError if a step does not converge even when divided.
 class DynamicPlant : public RodPlant {
  public:
-  /// Errors as RodInputs and RodDynamics. Throws std::invalid_argument if no initial equilibrium is found.
+  /// Throws the exceptions of RodInputs and RodDynamics, and SimulationError if there is no initial
+  /// equilibrium.
   explicit DynamicPlant(const PlantSetup& setup);
   ~DynamicPlant() override;
 

@@ -6,21 +6,23 @@
 
 namespace flexura {
 
-/// Tendon displacements in addition to those of the bends. Each tendon moves to its target at constant rate,
-/// and all arrive together. Like BendMotion, it is a function of time and of the commands up to that time.
+/// Tendon displacements over time, in addition to those by the bends. Each tendon moves to its target at a
+/// constant rate, and all arrive at the same time. Like BendMotion, the motion is a function of time and of
+/// the commands up to this time.
 class PullMotion {
  public:
-  /// Starts with `tendons` tendons at 0. Queries are allowed back to `horizon` s before the last command.
+  /// Starts with all displacements 0. `tendons`: number of tendons. Queries are allowed back to `horizon` s
+  /// before the last command.
   PullMotion(std::size_t tendons, double horizon);
 
-  /// Moves from `time` s on to `target`, m, and reaches it at `end` s, or at once if `end` has passed. `time`
-  /// is not before the last command.
+  /// Commands a motion to `target`, m, that begins at `time`, s, and ends at `end`, s. If `end` is not after
+  /// `time`, the motion is immediate. `time` must not be before the last command.
   void command(double time, std::vector<double> target, double end);
-  /// Moves all tendons back to 0, with times as for command().
+  /// Commands a motion of all tendons back to 0. Times are as for command().
   void back(double time, double end);
   void halt(double time);
 
-  /// Adds the displacement of each tendon, m.
+  /// Adds the displacement of each tendon to `pulled`, m.
   void add_to(std::vector<double>& pulled, double time) const;
 
  private:

@@ -37,7 +37,7 @@ void lay_by_name(Node::Array& below, Node entry, const std::string& path) {
     throw InputError(std::vector<Problem>{
         {where,
          fmt::format(
-             "truth.{}: nothing outside [truth] has the name \"{}\": expected the name of an existing entry",
+             "truth.{}: no entry outside [truth] has the name \"{}\": expected the name of an existing entry",
              path, name)}});
   }
   lay(*found, std::move(entry), path);
@@ -128,7 +128,7 @@ Node truth_of(Node document) {
 }
 
 std::string truth_problem(const RigConfig& model, const RigConfig& truth) {
-  if (truth.arm.kind != model.arm.kind) return "the true arm is of another kind than the model's arm";
+  if (truth.arm.kind != model.arm.kind) return "the true arm and the model's arm have different kinds";
   if (truth.arm.section.size() != model.arm.section.size()) {
     return fmt::format("the true arm has {} sections: expected {}, as in the model", truth.arm.section.size(),
                        model.arm.section.size());
@@ -141,10 +141,10 @@ std::string truth_problem(const RigConfig& model, const RigConfig& truth) {
   }
   if (truth.arm.mechanics != ArmMechanics::kinematic && truth.drive && !truth.arm.tendon.empty() &&
       truth.arm.tendon.size() != truth.drive->tendon.size())
-    return fmt::format("the true arm has {} tendons: expected {}, one for each tendon of the drive",
+    return fmt::format("the true arm has {} tendons: expected {}, one per tendon of the drive",
                        truth.arm.tendon.size(), truth.drive->tendon.size());
   if (!std::ranges::equal(truth.cameras, model.cameras, {}, &CameraConfig::name, &CameraConfig::name))
-    return "expected the same camera names in the truth as in the model, in the same order";
+    return "expected equal camera names in the truth and in the model, in equal order";
   for (std::size_t i = 0; i < model.cameras.size(); ++i) {
     const SensorConfig &one = truth.cameras[i].sensor, &other = model.cameras[i].sensor;
     if (one.width != other.width || one.height != other.height || one.bits != other.bits ||

@@ -12,25 +12,26 @@
 
 namespace flexura {
 
-/// A rig as described by the tables of a file: the model that tasks use, or the truth.
+/// A rig as described by the tables of a file. It is either the model that tasks use, or the truth.
 struct RigConfig {
   ArmConfig arm;
-  /// Missing: the sections bend as commanded, within their own bend rates.
+  /// Drive of the arm; missing: the sections bend as commanded, within their own rates.
   std::optional<DriveConfig> drive;
-  std::vector<CameraConfig> cameras;  ///< In the order in which tasks number them.
+  std::vector<CameraConfig> cameras;  ///< Cameras. Tasks number them in this order.
   std::vector<ObstacleConfig> obstacles = {};
 };
 
-/// Returns the document with its table [truth] merged over the rest. The result describes the simulated world
-/// and is read with the same tables. Tables are merged key by key, also if units in keys differ. Arrays of
-/// tables are merged entry by entry: by `name` if entries have one, otherwise by position. An array without
-/// names and with another length replaces the original. All other values are replaced. Without [truth],
-/// returns the document itself. Throws InputError if [truth] is not a table, or names a missing entry.
+/// Returns the document with the values of its table [truth] instead of the others. The result describes the
+/// simulated world and has the format of the model. Tables are merged key by key, even if the keys have
+/// different units. Arrays of tables are merged entry by entry: by `name` if entries have names, otherwise by
+/// position. An array without names whose length differs replaces the original. All other values are
+/// replaced. Without [truth], returns the document itself. Throws InputError if [truth] is not a table, or
+/// names a missing entry.
 [[nodiscard]] Node truth_of(Node document);
 
-/// Returns why `truth` and `model` do not match, or "" if they do. They must have the same kind of arm and
-/// the same numbers of sections, drives and axes. Their cameras must have the same names, and the same sizes
-/// and kinds of images.
+/// Returns why `truth` and `model` do not match, or "" if they do. They must have equal kinds of arms and
+/// equal numbers of sections, drives and axes. Their cameras must have equal names, and images of equal size
+/// and kind.
 [[nodiscard]] std::string truth_problem(const RigConfig& model, const RigConfig& truth);
 
 }  // namespace flexura

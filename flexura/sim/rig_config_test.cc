@@ -114,7 +114,7 @@ TEST(Truth, SaysWhereItNamesNothing) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(),
-                HasSubstr("x.toml:8:8: truth.camera: nothing outside [truth] has the name \"sied\""));
+                HasSubstr("x.toml:8:8: truth.camera: no entry outside [truth] has the name \"sied\""));
   }
   EXPECT_THROW((void)truth_of(table({member("truth", 3.0)})), InputError);
 }

@@ -29,9 +29,9 @@ std::vector<std::int64_t> microsteps(const Eigen::VectorXd& u) {
 const ArmRod& rod_in(const PlantSetup& setup) {
   if (!setup.truth.rod) throw std::invalid_argument("the true arm is not a rod");
   if (setup.truth.drive && setup.truth.drive->axes.size() != setup.truth.rod->rod.tendons.size())
-    throw std::invalid_argument(
-        fmt::format("the arm has {} tendons: expected {}, one for each axis of its drive",
-                    setup.truth.rod->rod.tendons.size(), setup.truth.drive->axes.size()));
+    throw std::invalid_argument(fmt::format("the arm has {} tendons: expected {}, one per axis of its drive",
+                                            setup.truth.rod->rod.tendons.size(),
+                                            setup.truth.drive->axes.size()));
   return *setup.truth.rod;
 }
 

@@ -16,22 +16,22 @@
 namespace flexura {
 
 /// The inputs of a rod over time: its motors or commanded bends, and its weight and loads, which can be
-/// switched off. A function of time and of the commands up to that time.
+/// switched off. They are functions of time and of the commands up to this time.
 ///
 /// With a drive, its spools pull the tendons in, starting from the pretension. A motor whose load exceeds its
-/// pull-out torque loses steps, one turn of its field at a time. Without a drive, the displacements of
-/// tendons are those of arcs with the commanded bends, plus those of pull(). Commanded stretches are factors
-/// on the sections' own lengths.
+/// pull-out torque loses the steps of one turn of its field at a time. Without a drive, tendon displacements
+/// are those of arcs with the commanded bends, plus those of pull(). Commanded stretches are factors on the
+/// sections' lengths.
 class RodInputs {
  public:
-  /// Requires that the truth has a rod, with a tendon for each axis of its drive if it has one. Throws
-  /// std::invalid_argument otherwise, or if there is no equilibrium under the pretension.
+  /// Throws std::invalid_argument if the truth has no rod, if it has a drive but not one tendon per axis, or
+  /// if there is no equilibrium under the pretension.
   explicit RodInputs(const PlantSetup& setup);
 
-  /// Has the effect of Plant::command().
+  /// Implements Plant::command().
   void command(double time, const Eigen::VectorXd& u, double duration);
-  /// Has the effect of Plant::halt(). Each function from here to pulled() has the effect of the function of
-  /// Plant with the same name.
+  /// Implements Plant::halt(). The following functions up to pulled() also implement the functions of Plant
+  /// with their names.
   void halt(double time);
   /// Pulls the tendons individually.
   std::optional<ArmState> pull(double time, const std::vector<double>& displacements, double duration);
@@ -43,40 +43,40 @@ class RodInputs {
   void push(double time, const std::optional<PlantPush>& push);
   /// Returns the push on the arm at a time; std::nullopt without a push.
   [[nodiscard]] std::optional<PlantPush> pushed(double time) const;
-  /// Returns the push as a spring of the rod, in the frame of its base.
+  /// Returns the push as a spring on the rod, in the frame of the rod's base.
   [[nodiscard]] std::optional<PointSpring> spring(double time) const;
-  /// Returns whether the push changed after `start` and up to `end`, s.
+  /// Returns whether the push changes at a time in (start, end], s.
   [[nodiscard]] bool is_pushed_anew(double start, double end) const;
   /// Returns the commanded bends and stretches.
   [[nodiscard]] std::optional<ArmState> commanded(double time) const;
-  /// Returns how far each tendon is pulled in, m.
+  /// Returns by how much each tendon is pulled in, m.
   [[nodiscard]] std::vector<double> pulled(double time) const;
   /// Discards records before `time`, s. Afterwards no time before `time` may be queried.
   void forget_before(double time);
 
   [[nodiscard]] const Rod& rod() const { return rod_; }
-  /// Returns zero lost microsteps for each axis; empty without a drive.
+  /// Returns a vector of zeros, one per axis, for lost microsteps; empty without a drive.
   [[nodiscard]] std::vector<double> nothing_lost() const;
-  /// Returns how far each tendon is pulled in from the rod at rest, m. The pretension is included, and the
-  /// `lost` microsteps of each motor are subtracted.
+  /// Returns by how much each tendon is pulled in relative to the rod at rest, m. It includes the pretension,
+  /// and the `lost` microsteps of each motor are subtracted.
   [[nodiscard]] std::vector<double> displacements(double time, const std::vector<double>& lost) const;
-  /// Returns the sections' unloaded lengths as factors on their nominal lengths.
+  /// Returns the sections' unloaded lengths, as factors on their nominal lengths.
   [[nodiscard]] std::vector<double> rest_stretches(double time) const;
   /// Returns whether commands can change the lengths of sections.
   [[nodiscard]] bool can_stretch() const;
   /// Returns the times after `start` and before `end`, s, at which tendons break or the weight is switched.
   [[nodiscard]] std::vector<double> events(double start, double end) const;
-  /// Returns the loads in addition to the tendons.
+  /// Returns the loads on the rod other than the tendons.
   [[nodiscard]] const RodLoads& loads(double time) const;
-  /// Returns whether the weight was switched after `start` and up to `end`, s.
+  /// Returns whether the weight is switched at a time in (start, end], s.
   [[nodiscard]] bool is_weighed_anew(double start, double end) const;
   /// Returns whether any motor can lose steps.
   [[nodiscard]] bool may_lose_steps() const;
-  /// Returns for each axis whether its load under these tensions, N, exceeds `part` times the motor's
-  /// pull-out torque at its current rate. Empty without a drive.
+  /// Returns, for each axis, whether the motor is overloaded: its load under these tensions, N, exceeds
+  /// `part` times the pull-out torque at its current rate. Empty without a drive.
   [[nodiscard]] std::vector<char> overloaded(double time, const std::vector<double>& tensions,
                                              double part = 1) const;
-  /// Returns the number of microsteps per turn of the magnetic field of an axis's motor.
+  /// Returns the number of microsteps per turn of the magnetic field in an axis's motor.
   [[nodiscard]] double field_turn(std::size_t axis) const;
   /// Adds a turn of the field to the lost microsteps of each motor that is overloaded under these tensions,
   /// N. Returns whether any motor was overloaded.

@@ -15,7 +15,7 @@ class RodPlant : public Plant {
  public:
   void command(double time, const Eigen::VectorXd& u, double duration) override;
   void halt(double time) override;
-  /// Does nothing for an arm with a drive, whose motors move the tendons.
+  /// Does nothing for an arm with a drive, because its motors move the tendons.
   std::optional<ArmState> pull(double time, const std::vector<double>& displacements,
                                double duration) override;
   bool weigh(double time, bool on) override;
@@ -29,11 +29,11 @@ class RodPlant : public Plant {
   [[nodiscard]] std::vector<double> pulled(double time) const override { return inputs_.pulled(time); }
 
  protected:
-  /// Errors as RodInputs.
+  /// Throws the exceptions of RodInputs.
   explicit RodPlant(const PlantSetup& setup)
       : inputs_(setup), tube_(setup.truth.arm, inputs_.rod()), X_WB_(setup.truth.arm.X_WB) {}
 
-  /// Called after a command: discards results for times after it.
+  /// Called after a command. Discards results for times after the command.
   virtual void forget() = 0;
   [[nodiscard]] const RodInputs& inputs() const { return inputs_; }
   [[nodiscard]] RodInputs& inputs() { return inputs_; }

@@ -14,10 +14,10 @@ namespace flexura {
 /// Computes the backbone and tube of an arm from the strain modes of its rod. Thread-safe.
 class RodTube {
  public:
-  /// The tube has the radii of `arm` and the centerline of `rod`. Errors as RodChain.
+  /// The tube has the radii of `arm` and the centerline of `rod`. Throws the exceptions of RodChain.
   RodTube(const Arm& arm, const Rod& rod);
 
-  /// Returns the backbone in the world frame. `rest_stretches` are factors on the sections' own lengths.
+  /// Returns the backbone in the world frame. `rest_stretches`: factors on the sections' lengths.
   [[nodiscard]] Backbone backbone(const Eigen::VectorXd& q, const std::vector<double>& rest_stretches) const;
 
  private:
@@ -27,8 +27,8 @@ class RodTube {
   std::vector<std::vector<RodNode>> nodes_;  // For each section.
 };
 
-/// Returns the places on the rod of the poses of a RodTube's backbone, from base to tip. They divide each
-/// section into equal parts. Between two consecutive places there are two arcs.
+/// Returns the positions on the rod, from base to tip, between which RodTube interpolates the backbone. They
+/// divide each section into equal parts. The backbone has two arcs between successive positions.
 [[nodiscard]] std::vector<RodPlace> tube_places(const Rod& rod);
 
 }  // namespace flexura

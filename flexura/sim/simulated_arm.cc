@@ -19,7 +19,7 @@ void require_same_kind(const ArmSetup& model, const ArmSetup& truth) {
   if (model.arm.sections.size() != truth.arm.sections.size() ||
       model.drive.has_value() != truth.drive.has_value() ||
       (model.drive && model.drive->axes.size() != truth.drive->axes.size()))
-    throw std::invalid_argument("the true arm has other sections or axes than the model's");
+    throw std::invalid_argument("the sections or axes of the true arm do not match those of the model");
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ CommandOutcome SimulatedBends::pull(const std::vector<double>& displacements, do
   } catch (const std::invalid_argument& error) {
     return link_.refusal(error.what());
   }
-  if (!target) return link_.refusal("it has no tendons to pull");
+  if (!target) return link_.refusal("the arm has no tendons to pull");
   bends_.command(link_.now(), *target, duration);
   return Accepted{};
 }
@@ -106,9 +106,7 @@ Outcome<ArmReading> SimulatedArm::read() { return port_->read(); }
 
 ArmState SimulatedArm::truth(double time) const {
   const std::optional<ArmState> state = plant_->commanded(time);
-  if (!state)
-    throw std::logic_error(
-        "the bends of the simulated arm are not imposed by drives: there is no state to return");
+  if (!state) throw std::logic_error("the simulated drives do not impose bends: there is no state to return");
   return *state;
 }
 

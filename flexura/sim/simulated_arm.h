@@ -16,20 +16,20 @@
 
 namespace flexura {
 
-/// An arm without drives that moves its sections to commanded shapes. Its readings depend only on the
+/// An arm without drives that moves its sections to commanded shapes. Its measured shape depends only on the
 /// commands and the rates of the sections.
 class SimulatedBends : public ArmPort {
  public:
-  /// Arguments as for SimulatedArm. The plant must outlive this object.
+  /// The arguments are those of SimulatedArm. The plant must outlive this object.
   SimulatedBends(const ArmSetup& model, const ArmSetup& truth, Plant& plant, const ClockPort& clock,
                  double horizon);
 
   CommandOutcome command(const ArmState& state, double duration) override;
   CommandOutcome halt() override;
   Outcome<ArmReading> read() override;
-  /// Has the effect of SimulatedArm::pull().
+  /// Implements SimulatedArm::pull().
   CommandOutcome pull(const std::vector<double>& displacements, double duration);
-  /// Returns the link to the arm, which can be interrupted for a time.
+  /// Returns the link to the arm. The link can be interrupted temporarily.
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:
@@ -44,9 +44,9 @@ class SimulatedBends : public ArmPort {
 /// (DrivenArm). Without a drive, the sections move at their own rates.
 class SimulatedArm : public ArmPort {
  public:
-  /// Model and truth have their initial shapes when the motors are at the model's initial positions. The true
-  /// state can be queried back to `horizon` s before the last command. Throws std::invalid_argument if truth
-  /// and model do not match (truth_problem).
+  /// At the start, the motors are at the positions for the model's initial shape, and the true arm has its
+  /// own initial shape. The true state can be queried back to `horizon` s before the last command. Throws
+  /// std::invalid_argument if truth and model do not match (truth_problem).
   SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const ClockPort& clock, double horizon,
                const MakePlant& make_plant = true_plant);
 
@@ -54,20 +54,20 @@ class SimulatedArm : public ArmPort {
   CommandOutcome halt() override;
   Outcome<ArmReading> read() override;
 
-  /// Pulls each tendon in to the given displacement, m: by the axes of the drive, or without a drive by
-  /// Plant::pull(). `duration` as for command(). Refused if the arm has no tendons to pull, or unless there
-  /// is one finite displacement per tendon.
+  /// Pulls each tendon in to the given displacement, m. With a drive, the axes do so; without a drive,
+  /// Plant::pull() does. `duration` is as for command(). Refuses the command if the arm has no tendons to
+  /// pull, or unless there is one finite displacement per tendon.
   CommandOutcome pull(const std::vector<double>& displacements, double duration);
 
-  /// Returns the true state that the drives impose; not for algorithms. Times before the last command by more
-  /// than the horizon are not allowed. Throws std::logic_error if the plant has no such state
+  /// Returns the true bends and stretches that the drives impose; not for algorithms. `time`, s, must be at
+  /// most the horizon before the last command. Throws std::logic_error if the plant has no such state
   /// (Plant::commanded).
   [[nodiscard]] ArmState truth(double time) const;
   /// Returns the backbone of the true arm; not for algorithms.
   [[nodiscard]] Backbone backbone(double time) const { return plant_->backbone(time); }
   /// Returns the true arm; not for algorithms.
   [[nodiscard]] Plant& plant() { return *plant_; }
-  /// Returns the link to the arm, which can be interrupted for a time.
+  /// Returns the link to the arm. The link can be interrupted temporarily.
   [[nodiscard]] SimulatedLink& link() { return drive_ ? drive_->link() : bends_->link(); }
   /// Returns the simulated controller of the drive; null without a drive.
   [[nodiscard]] SimulatedDrive* drive() { return drive_ ? &*drive_ : nullptr; }

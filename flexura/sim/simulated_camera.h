@@ -14,7 +14,7 @@
 
 namespace flexura {
 
-/// Everything that a TakePicture function needs to render a frame.
+/// Data that a TakePicture function needs to render a frame.
 struct Shot {
   std::size_t camera = 0;  ///< Index of the camera in the rig.
   /// Number of the frame. Together with seed and camera it determines the noise.
@@ -24,42 +24,41 @@ struct Shot {
   const SensorConfig* sensor = nullptr;      ///< Exposure time and row timing. Never null.
   std::function<View(double)> view;          ///< Returns the camera's view at a time from `start` on.
   std::function<Backbone(double)> backbone;  ///< Returns the arm's backbone at a time from `start` on.
-  bool is_covered = false;                   ///< Whether the lens is covered: there is no light.
+  bool is_covered = false;                   ///< Whether the lens is covered, so that there is no light.
 };
 
-/// Renders the image of a shot with the sensor's size, channels and bits. The same shot gives the same image.
+/// Renders the image of a shot with the sensor's size, channels and bits. Equal shots must give equal images.
 using TakePicture = std::function<Picture(const Shot&)>;
 
-/// Number of newest frames that `SimulatedCamera::newest` examines. If more frames in a row were lost, it
-/// returns no frame.
+/// Number of frames that `SimulatedCamera::newest` examines, beginning with the newest. If all of them were
+/// lost, it returns no frame.
 inline constexpr int frames_kept = 16;
 
 /// Returns the longest time after the start of its exposure at which a frame can be requested, s. Views and
 /// backbones must be available for this time in the past.
 [[nodiscard]] double frame_horizon(const SensorConfig& sensor);
 
-/// A camera that exposes frames at its frame rate from time 0 on, delays them and loses some. Only requested
-/// frames are rendered. Several cameras of a rig can be queried at once, each from its own thread. Meanwhile
-/// no thread may wait for the clock or send commands. Their TakePicture functions must be thread-safe for
-/// this.
+/// A camera that exposes frames at its frame rate from time 0, delays them and loses some. It renders only
+/// requested frames. Several cameras of a rig can be queried at once, each from its own thread, if the
+/// TakePicture functions are thread-safe. Meanwhile, no thread may wait for the clock or send commands.
 class SimulatedCamera : public CameraPort {
  public:
-  /// `shot` describes the content of the frames. Its `frame`, `start` and `is_covered` are set for each
-  /// frame.
+  /// `shot` describes the content of the frames. The camera sets its members `frame`, `start` and
+  /// `is_covered` for each frame.
   SimulatedCamera(const Camera& camera, Shot shot, TakePicture take_picture, ClockPort& clock);
 
   Outcome<std::optional<Frame>> newest() override;
   Outcome<std::optional<Frame>> wait(double timeout) override;
 
-  /// Returns all available frames that were neither returned nor skipped, oldest first, regardless of the
-  /// link. For recording, not for algorithms.
+  /// Returns all available frames that were neither returned nor skipped, the oldest first, even if the link
+  /// is interrupted. It is meant for recording, not for algorithms.
   [[nodiscard]] std::vector<Frame> all_new();
   /// Returns whether all_new() would return a frame.
   [[nodiscard]] bool has_new() const;
   /// Skips all frames available now.
   void skip_to_now() { next_ = last_received(clock_->now()) + 1; }
 
-  /// Returns the link to the camera, which can be interrupted for a time.
+  /// Returns the link to the camera. The link can be interrupted temporarily.
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:

@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// A clock of simulated time that starts at 0 s. Waiting advances it without taking real time.
+/// A clock of simulated time that starts at 0 s. Waiting advances the clock without taking real time.
 class SimulatedClock : public ClockPort {
  public:
   [[nodiscard]] double now() const override { return now_; }

@@ -13,13 +13,12 @@
 
 namespace flexura {
 
-/// The controller of a simulated drive. It counts the microsteps of its motors and sends the same commands to
-/// the plant's true motors. The positions behind the backlash that it reports are computed with the model's
-/// backlash.
+/// The controller of a simulated drive. It counts the microsteps of its motors, and sends its commands also
+/// to the plant's true motors. The load positions that it reports are computed with the model's backlash.
 class SimulatedDrive : public DrivePort {
  public:
-  /// Starts at rest at `start`, microsteps. Motors have the limits of `real`. The plant must outlive this
-  /// object.
+  /// Starts at rest at the motor positions `start`, microsteps. Motors have the limits of `real`. The plant
+  /// must outlive this object.
   SimulatedDrive(const Drive& nominal, const Drive& real, const std::vector<std::int64_t>& start,
                  Plant& plant, const ClockPort& clock, double horizon);
 
@@ -29,7 +28,7 @@ class SimulatedDrive : public DrivePort {
   CommandOutcome halt() override;
   Outcome<DriveReading> read() override;
 
-  /// Returns the link to the drive, which can be interrupted for a time.
+  /// Returns the link to the drive. The link can be interrupted temporarily.
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:

@@ -16,27 +16,28 @@ namespace flexura {
 /// Three axes that are commanded together over one link.
 class ThreeAxes {
  public:
-  /// Reading of the motors.
+  /// Measured positions of the motors.
   struct Reading {
-    double time;                ///< s
+    double time;                ///< Time of the measurement, s.
     Eigen::Vector3d positions;  ///< Motor positions, rounded to their resolution and within their limits.
-    bool moving;                ///< Whether any of the three moves.
+    bool moving;                ///< Whether any of the three axes moves.
   };
 
-  /// The axes start at the true positions `start` while the motor counters read `counted`. The difference
-  /// remains as an offset. Each axis's backlash is symmetric about its motor position. Commands take effect
-  /// `delay` s after they were given. Positions can be queried back to `horizon` s before now.
+  /// The axes start at the true positions `start`, where the motor counters have the values `counted`. The
+  /// difference remains as an offset. Each axis's backlash is symmetric about its motor position. Commands
+  /// take effect `delay` s after they were given. Positions can be queried back to `horizon` s before the
+  /// present time.
   ThreeAxes(SimulatedLink link, const std::array<AxisConfig, 3>& axes, const Eigen::Vector3d& counted,
             const Eigen::Vector3d& start, double delay, double horizon);
 
-  /// Commands all three axes. Refuses values that are not finite. Positions are clamped and quantised.
+  /// Commands all three axes. Clamps and quantises positions. Refuses values that are not finite.
   CommandOutcome command(const Eigen::Vector3d& target);
   /// Stops all three axes as fast as possible.
   CommandOutcome halt();
   [[nodiscard]] Outcome<Reading> read() const;
-  /// Returns the load positions at `time` s, back to the horizon.
+  /// Returns the load positions at `time`, s, at most the horizon before the present time.
   [[nodiscard]] Eigen::Vector3d positions(double time) const;
-  /// Returns the link to the axes, which can be interrupted for a time.
+  /// Returns the link to the axes. The link can be interrupted temporarily.
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:
@@ -49,8 +50,8 @@ class ThreeAxes {
 /// A head whose motors have limited ranges, rates and accelerations, a resolution, backlash and delay.
 class SimulatedHead : public HeadPort {
  public:
-  /// Creates the head of the true `camera` at its initial state, at which its counters read `counted`. It can
-  /// be queried back to `horizon` s before now.
+  /// Creates the head of the true `camera` in its initial state, where its counters have the values
+  /// `counted`. It can be queried back to `horizon` s before the present time.
   SimulatedHead(const Camera& camera, const HeadState& counted, const ClockPort& clock, double horizon);
 
   CommandOutcome command(const HeadState& state) override;
@@ -59,7 +60,7 @@ class SimulatedHead : public HeadPort {
 
   /// Returns the true pan, tilt and zoom; not for algorithms.
   [[nodiscard]] HeadState truth(double time) const;
-  /// Returns the link to the head, which can be interrupted for a time.
+  /// Returns the link to the head. The link can be interrupted temporarily.
   [[nodiscard]] SimulatedLink& link() { return axes_.link(); }
 
  private:
@@ -67,11 +68,11 @@ class SimulatedHead : public HeadPort {
   ThreeAxes axes_;
 };
 
-/// A stage whose motors are modelled as those of SimulatedHead. It moves along the mount's axes (right, down,
-/// forward), m.
+/// A stage that moves along the mount's axes (right, down, forward), m. Its motors are modelled as those of
+/// SimulatedHead.
 class SimulatedStage : public StagePort {
  public:
-  /// Creates the stage of the true `camera`, with arguments as for SimulatedHead.
+  /// Creates the stage of the true `camera`. The arguments are as for SimulatedHead.
   SimulatedStage(const Camera& camera, const StageState& counted, const ClockPort& clock, double horizon);
 
   CommandOutcome command(const StageState& state) override { return axes_.command(state.offset); }
@@ -80,7 +81,7 @@ class SimulatedStage : public StagePort {
 
   /// Returns the true offset of the mount; not for algorithms.
   [[nodiscard]] StageState truth(double time) const { return {axes_.positions(time)}; }
-  /// Returns the link to the stage, which can be interrupted for a time.
+  /// Returns the link to the stage. The link can be interrupted temporarily.
   [[nodiscard]] SimulatedLink& link() { return axes_.link(); }
 
  private:

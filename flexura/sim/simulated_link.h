@@ -12,14 +12,14 @@
 
 namespace flexura {
 
-/// The link to a simulated device: the device's name, the rig's clock, and the outages of the link. Motion
-/// commanded before an outage continues.
+/// The link to a simulated device: the device's name, the rig's clock, and the outages of the link. During an
+/// outage, a motion that was commanded before continues.
 class SimulatedLink {
  public:
   SimulatedLink(std::string name, const ClockPort& clock) : name_(std::move(name)), clock_(&clock) {}
 
   [[nodiscard]] double now() const { return clock_->now(); }
-  /// Interrupts the link in [from, to), s.
+  /// Interrupts the link during [from, to), s.
   void lose(double from, double to) { outages_.emplace_back(from, to); }
   /// Returns the fault at the current time, if there is one.
   [[nodiscard]] std::optional<PortFault> fault() const {

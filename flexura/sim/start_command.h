@@ -7,8 +7,8 @@
 namespace flexura {
 
 /// Returns the initial command u of a plant (PlantSetup::start). Without drives, it is the initial state of
-/// the true arm. With drives, it is the motor positions of the model's initial state. Either both arms have a
-/// drive or none.
+/// the true arm. With drives, it has the motor positions for the model's initial state. Either both arms or
+/// neither arm must have a drive.
 [[nodiscard]] Eigen::VectorXd start_command(const ArmSetup& model, const ArmSetup& truth);
 
 }  // namespace flexura

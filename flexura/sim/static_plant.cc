@@ -99,8 +99,9 @@ std::string StaticPlant::warning(double time) const {
     return each.has_jumped && then <= time && time < then + lasts;
   });
   if (at.snapped || has_jumped)
-    return "the arm snaps: no stable equilibrium is left nearby, and it jumps to another one";
-  if (!at.stable) return "the equilibrium of the arm is unstable: a small push makes the arm leave it";
+    return "the arm snaps: there is no stable equilibrium nearby, and the arm jumps to another equilibrium";
+  if (!at.stable)
+    return "the equilibrium of the arm is unstable: a small push makes the arm leave the equilibrium";
   return {};
 }
 

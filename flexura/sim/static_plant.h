@@ -13,13 +13,14 @@
 namespace flexura {
 
 /// A plant whose arm is an elastic rod without inertia (docs/mechanics.md). The arm is always in equilibrium
-/// under tendons, weight and loads. Among several equilibria, it is in the one reached along its path, which
-/// is computed in steps of `step` s from time 0 on. Throws SimulationError if the arm has no equilibrium.
+/// under tendons, weight and loads. If there are several equilibria, the arm is in the one that it reaches
+/// along its path. The path is computed in steps of `step` s from time 0. Throws SimulationError if the arm
+/// has no equilibrium.
 class StaticPlant : public RodPlant {
  public:
   static constexpr double step = 0.02;
 
-  /// Errors as RodInputs.
+  /// Throws the exceptions of RodInputs.
   explicit StaticPlant(const PlantSetup& setup);
 
   void advance(double time) override;
@@ -32,7 +33,7 @@ class StaticPlant : public RodPlant {
   }
   [[nodiscard]] std::vector<double> lost_steps(double time) const override { return snapshot(time).lost; }
 
-  /// Returns the equilibrium of the rod in the frame of its base, with the tendon tensions. Times as for
+  /// Returns the equilibrium of the rod in the frame of its base, with the tendon tensions. Times are as for
   /// backbone().
   [[nodiscard]] Equilibrium equilibrium(double time) const;
 

@@ -12,22 +12,22 @@
 namespace flexura {
 
 /// Returns the bends and stretches whose arc_displacements() are nearest to `displacements` by least squares.
-/// Stretches vary only in sections whose limits allow it. Displacements may not determine some combinations
-/// of bends and stretches, or determine them a hundred times less well than others. These combinations keep
-/// the values nearest to those of the straight arm. Limits are not applied. Throws std::invalid_argument
-/// unless there is one finite displacement per tendon.
+/// Stretches vary only in sections whose limits allow it. The displacements may not determine some
+/// combinations of bends and stretches, or may determine them a hundred times less accurately than others.
+/// These combinations remain as near as possible to those of the straight arm. Limits are not applied. Throws
+/// std::invalid_argument unless there is one finite displacement per tendon.
 [[nodiscard]] ArmState nearest_arcs(const Rod& rod, const Arm& arm, const std::vector<double>& displacements);
 
 /// A tendon that can be pulled individually.
 struct PulledTendon {
-  std::size_t section = 0;  ///< Section at whose end it is fastened, 0 at the base.
-  /// Range of displacements, m, that bends within the sections' limits require and the motor can reach. A
-  /// section without a limit is assumed to bend by up to a whole turn.
+  std::size_t section = 0;  ///< Index of the section at whose end the tendon is fastened; 0 at the base.
+  /// Range of displacements, m, that bends within the sections' limits require and that the motor can reach.
+  /// A section without a limit is assumed to bend by up to a full turn.
   std::array<double, 2> range = {0, 0};
-  /// Displacement of each tendon per metre of this tendon such that no tendon works against it; 1 for itself.
-  /// Computed for the straight arm and a bend of the section where this tendon ends.
+  /// Displacement of each tendon per metre of this tendon for which no tendon opposes the motion; 1 for this
+  /// tendon. It is computed for the straight arm and a bend of the section where this tendon ends.
   std::vector<double> together;
-  /// Points of the route from the base to the tendon's end, m: arc length of the rod at rest, and offset (x,
+  /// Points of the route from the base to the tendon's end, m: arc length on the rod at rest, and offset (x,
   /// y) in the cross-section.
   std::vector<std::array<double, 3>> route;
 };

@@ -11,25 +11,25 @@
 
 namespace flexura {
 
-/// A pool of threads that run jobs together and sleep in between. Used to render frames, one thread per
+/// A pool of threads that run jobs in parallel and sleep in between. It renders frames with one thread per
 /// camera.
 class ThreadPool {
  public:
-  using Job = std::function<void(std::size_t)>;  ///< Takes the number of the job.
+  using Job = std::function<void(std::size_t)>;  ///< Job function. Its argument is the number of the job.
 
-  /// Creates a pool of `threads` threads including the caller's; at least one.
+  /// Creates a pool of `threads` >= 1 threads, including the caller's thread.
   explicit ThreadPool(std::size_t threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// Calls job(0) ... job(count - 1) and returns when all are done. Jobs are assigned to threads in a fixed
-  /// way: jobs i and i + threads() run on the same thread, in this order. A thread stops at its first
-  /// exception; the exception of the lowest-numbered thread is rethrown here. Not to be called from two
+  /// Calls job(0) ... job(count - 1) and returns when all are done. The assignment of jobs to threads is
+  /// fixed: jobs i and i + threads() run on one thread, in this order. A thread stops at its first exception.
+  /// run() rethrows the exception of the thread with the lowest number. It must not be called from two
   /// threads at once.
   void run(std::size_t count, const Job& job);
 
-  /// Returns the number of threads including the caller's.
+  /// Returns the number of threads, including the caller's thread.
   [[nodiscard]] std::size_t threads() const { return helpers_.size() + 1; }
 
  private:

@@ -6,11 +6,11 @@
 
 namespace flexura {
 
-/// A running program that reads its standard input from this process. It shares this process's standard
-/// error; its standard output is discarded.
+/// A running program that reads its standard input from this process. The program writes to the standard
+/// error of this process. Its standard output is discarded.
 class ChildProcess {
  public:
-  /// Starts `arguments[0]` from the PATH. Throws std::runtime_error if there is no such program.
+  /// Starts `arguments[0]` from the PATH. Throws std::runtime_error if the program does not exist.
   explicit ChildProcess(const std::vector<std::string>& arguments);
   /// Closes the program's input and waits for the program to end.
   ~ChildProcess();
@@ -29,7 +29,7 @@ class ChildProcess {
   int process_ = -1;
 };
 
-/// Returns true if this program is on the PATH.
+/// Returns true if a program with this name is on the PATH.
 [[nodiscard]] bool has_program(const std::string& name);
 
 }  // namespace flexura

@@ -68,7 +68,7 @@ class CsvParser {
   void line(std::string_view text, int number) {
     const auto cells = split(text);
     if (!cells) {
-      problem(number, 1, "a quote is not closed, or text follows one");
+      problem(number, 1, "a quote is not closed, or text follows a closing quote");
     } else if (table_.columns.empty()) {
       header(*cells, number);
     } else {
@@ -101,7 +101,7 @@ class CsvParser {
       is_lost_ = true;
     }
     for (const Cell& cell : cells) {
-      if (cell.text.empty()) problem(number, cell.column, "a column without a name");
+      if (cell.text.empty()) problem(number, cell.column, "the column has no name");
       if (std::ranges::count(table_.columns, cell.text) > 0) {
         problem(number, cell.column, fmt::format("column {} occurs twice", Node{cell.text, {}}.brief()));
       }

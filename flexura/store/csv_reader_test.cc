@@ -30,7 +30,7 @@ TEST(ParseCsv, ReadsNamesAndNumbers) {
 TEST(ParseCsv, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(csv_error_of(""), "x.csv:1:1: empty: expected a line of column names");
   EXPECT_EQ(csv_error_of("a,,a\n"),
-            "x.csv:1:3: a column without a name\nx.csv:1:4: column \"a\" occurs twice");
+            "x.csv:1:3: the column has no name\nx.csv:1:4: column \"a\" occurs twice");
   EXPECT_EQ(
       csv_error_of("a,b\n1\n1,2,3\n"),
       "x.csv:2:1: 1 values: expected 2, one per column\nx.csv:3:1: 3 values: expected 2, one per column");
@@ -40,7 +40,7 @@ TEST(ParseCsv, SaysWhatIsWrongAndWhere) {
     EXPECT_THAT(csv_error_of(std::string("a\n") + bad), HasSubstr("x.csv:2:1: ")) << bad;
   }
   EXPECT_THAT(csv_error_of("a\n\"1\n"), HasSubstr("x.csv:2:1: a quote is not closed"));
-  EXPECT_THAT(csv_error_of("a\n\"1\"2\n"), HasSubstr("text follows one"));
+  EXPECT_THAT(csv_error_of("a\n\"1\"2\n"), HasSubstr("text follows a closing quote"));
 }
 
 TEST(ParseCsv, SaysWhatSeparatesColumnsInOneLine) {

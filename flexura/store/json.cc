@@ -108,7 +108,7 @@ class NodeBuilder : public nlohmann::json_sax<nlohmann::json> {
     std::ranges::sort(names, {}, value);
     const auto twice = std::ranges::adjacent_find(names, {}, value);
     if (twice != names.end())
-      throw InputError({{start(), fmt::format("key {} is given twice", Node{**twice, {}}.brief())}});
+      throw InputError({{start(), fmt::format("the key {} occurs twice", Node{**twice, {}}.brief())}});
   }
   bool close() {
     open_.pop_back();

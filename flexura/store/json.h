@@ -7,14 +7,13 @@
 
 namespace flexura {
 
-/// Parses one JSON document into nodes. Throws InputError (source:line:column) on invalid JSON, on a repeated
-/// key, and on nesting deeper than 64. Numbers beyond the range of a double are errors; integers stay
-/// integers.
+/// Parses one JSON document into nodes. Throws InputError (source:line:column) for invalid JSON, repeated
+/// keys, nesting deeper than 64, and numbers beyond the range of a double. Integers remain integers.
 [[nodiscard]] Node parse_json(std::string_view text, const std::string& source);
 
-/// Returns the node as JSON: keys in their order, doubles with their exact values, and `null` for values that
-/// JSON lacks. `indent` < 0 gives one line; otherwise `indent` is the number of spaces per level. Containers
-/// of only plain values are on one line.
+/// Returns the node as JSON. Keys keep their order, and doubles keep their exact values. Values that do not
+/// exist in JSON become `null`. With `indent` < 0, the result is one line; otherwise `indent` is the number
+/// of spaces per level. Containers that have only plain values are on one line.
 [[nodiscard]] std::string write_json(const Node& node, int indent = -1);
 
 }  // namespace flexura

@@ -38,7 +38,7 @@ TEST(ParseJson, SaysWhereAndWhyTextIsNoJson) {
 }
 
 TEST(ParseJson, RefusesAKeyGivenTwice) {
-  EXPECT_THAT(json_error_of(R"({"a":1,"b":2,"a":3})"), HasSubstr("key \"a\" is given twice"));
+  EXPECT_THAT(json_error_of(R"({"a":1,"b":2,"a":3})"), HasSubstr("key \"a\" occurs twice"));
   EXPECT_EQ(json_error_of(R"({"a":{"a":1}})"), "");
   const std::string long_key = std::string(1000, 'k');
   EXPECT_LT(json_error_of(fmt::format(R"({{"{}":1,"{}":2}})", long_key, long_key)).size(), 100U);
@@ -49,7 +49,7 @@ TEST(ParseJson, TakesATextThatIsAllKeys) {
   std::string text = "{";
   for (int i = 0; i < 100000; ++i) text += fmt::format("\"{}\":0,", i);
   EXPECT_EQ(json_error_of(text + "\"x\":0}"), "");
-  EXPECT_THAT(json_error_of(text + "\"77\":0}"), HasSubstr("key \"77\" is given twice"));
+  EXPECT_THAT(json_error_of(text + "\"77\":0}"), HasSubstr("key \"77\" occurs twice"));
 }
 
 TEST(ParseJson, RefusesDeepNesting) {

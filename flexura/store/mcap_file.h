@@ -23,9 +23,9 @@ class AppendFile {
   /// Returns false after close() or a failure.
   [[nodiscard]] bool is_open() const { return descriptor_ >= 0; }
 
-  /// Passes the bytes to the operating system before it returns, so that they outlive the process. If not all
-  /// bytes can be written, removes the written ones, closes the file and throws std::system_error with the
-  /// path.
+  /// Passes the bytes to the operating system before it returns, so that they are not lost if the process
+  /// ends. If it cannot write all bytes, it removes those already written, closes the file and throws
+  /// std::system_error with the path.
   void append(std::span<const std::byte> bytes);
   /// Closes the file. Throws std::system_error with the path if the system reports a late failure. May be
   /// called twice.
@@ -46,7 +46,7 @@ class MappedFile {
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
-  /// Returns the bytes that the file had when it was opened; valid as long as this object.
+  /// Returns the bytes that the file had when it was opened. They are valid as long as this object exists.
   [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
 
  private:

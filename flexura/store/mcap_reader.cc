@@ -73,7 +73,7 @@ class McapScan {
     if (!take_magic("not an MCAP log")) return;
     for (bool first = true; auto record = next(cursor_); first = false) {
       if (first != (record->op == McapOp::header)) {
-        cursor_.fail("a log begins with its header, and has one", record->start);
+        cursor_.fail("a log must begin with its header, and must have only one header", record->start);
       }
       if (record->op == McapOp::footer) {
         finish(*record);
@@ -106,7 +106,7 @@ class McapScan {
         return Record{op, start, in.take_part(length)};
       }
     }
-    if (has_end_) in.fail("a record reaches past its end");
+    if (has_end_) in.fail("a record exceeds the part of the log that contains it");
     return std::nullopt;
   }
 
@@ -196,7 +196,8 @@ class McapScan {
     schema.data = in.take_text();
     if (id == 0) return;  // Invalid, and to be ignored.
     const auto [known, is_new] = schemas_.try_emplace(id, schema);
-    if (!is_new && known->second != schema) in.fail("a schema is defined twice, differently", record.start);
+    if (!is_new && known->second != schema)
+      in.fail("a schema is defined twice with different contents", record.start);
   }
 
   void take_channel(Record& record) {
@@ -221,7 +222,8 @@ class McapScan {
       in.fail("a channel has an unknown schema, " + std::to_string(schema_id), record.start);
     }
     const auto [known, is_new] = to_.channels_.try_emplace(id, channel);
-    if (!is_new && known->second != channel) in.fail("a channel is defined twice, differently", record.start);
+    if (!is_new && known->second != channel)
+      in.fail("a channel is defined twice with different contents", record.start);
   }
 
   void take_message(Record& record) {
@@ -247,7 +249,7 @@ class McapScan {
 
   void finish(Record& record) {
     McapCursor& in = record.content;
-    if (!data_end_) in.fail("the log ends before its data do", record.start);
+    if (!data_end_) in.fail("the log ends before its data section ends", record.start);
     if (in.remaining() != mcap_footer_length) in.fail("a footer has 20 bytes", record.start);
     const auto summary_start = in.take<std::uint64_t>();
     if (summary_start != 0 && summary_start != *data_end_) {

@@ -15,29 +15,29 @@
 
 namespace flexura {
 
-/// One message of a log; valid as long as its McapReader.
+/// One message of a log. It is valid as long as its McapReader exists.
 struct McapMessage {
   const McapChannel* channel;
-  std::uint64_t log_time;    ///< Simulated time, ns.
-  std::uint32_t sequence;    ///< As counted by the writer; it may wrap.
-  std::uint32_t chunk;       ///< The compressed chunk with its data, or McapChunks::plain.
-  const McapChunks* chunks;  ///< Of the reader.
-  std::size_t offset;        ///< Start of its data in the chunk or in the file.
-  std::size_t size;          ///< Of its data, bytes.
+  std::uint64_t log_time;  ///< Simulated time, ns.
+  std::uint32_t sequence;  ///< Number of the message, counted by the writer; it may wrap.
+  std::uint32_t chunk;     ///< Number of the compressed chunk with the message's data, or McapChunks::plain.
+  const McapChunks* chunks;  ///< Chunks of the reader.
+  std::size_t offset;        ///< Start of the data in the chunk or in the file.
+  std::size_t size;          ///< Size of the data, bytes.
 
-  /// Returns the data as written: JSON in the logs of runs. Decompresses the chunk if it is not among the
-  /// last ones used: read messages in the file's order. Threads may call it at once. Throws
-  /// std::runtime_error if the file has changed since it was opened.
+  /// Returns the data as written: JSON in the logs of runs. Decompresses the chunk unless it is one of the
+  /// last used ones. Reading messages in the file's order is therefore fast. Several threads may call it at
+  /// once. Throws std::runtime_error if the file has changed since it was opened.
   [[nodiscard]] std::string text() const { return chunks->text(chunk, offset, size); }
 };
 
-/// Whether to verify checksums (`crc`) or only the structure. With `structure` all messages of a damaged log
-/// are read whose structure is intact.
+/// Whether to verify checksums (`crc`) or only the structure. With `structure`, all messages of a damaged log
+/// with intact structure are read.
 enum class McapCheck : std::uint8_t { crc, structure };
 
-/// Reads a whole log, from this or another program, by its data section from start to end. Chunks may be
-/// plain or compressed by zstd. Memory grows only with the number of messages: plain data stay in the file's
-/// pages, and a few decompressed chunks are held at once. A log whose writer was killed has no end: it is
+/// Reads a whole log of this or another program. It reads the data section from start to end. Chunks may be
+/// plain or compressed by zstd. Memory grows only with the number of messages: plain data remain in the
+/// mapped file, and only a few decompressed chunks are kept. If the writer of a log was killed, the log is
 /// read up to its last complete chunk, and `truncated` is set. Constructors throw std::runtime_error with the
 /// log's name and the byte of the error. Errors are a file that is not a log, a record that does not fit, a
 /// wrong CRC, a message without channel, and an unknown compression. Further errors are a chunk that does not
@@ -45,9 +45,9 @@ enum class McapCheck : std::uint8_t { crc, structure };
 /// 64 MiB and 256 times the file's size in total.
 class McapReader {
  public:
-  /// Also throws std::system_error if the file cannot be read.
+  /// Throws std::system_error if the file cannot be read.
   explicit McapReader(const std::filesystem::path& path, McapCheck check = McapCheck::crc);
-  /// `bytes` must outlive the reader; `name` identifies them in errors.
+  /// `bytes` must outlive the reader. `name`: name of the log in errors.
   McapReader(std::span<const std::byte> bytes, const std::string& name, McapCheck check = McapCheck::crc);
 
   /// Returns the channels by their identifiers.

@@ -41,8 +41,8 @@ inline constexpr std::size_t mcap_record_header = 9;
 /// Length of the footer's content: starts of the summary and its offsets (8 + 8), and the summary's CRC (4).
 inline constexpr std::size_t mcap_footer_length = 20;
 
-/// Name of the compression of a chunk by Zstandard; plain chunks have an empty one. A chunk's CRC and
-/// uncompressed size are those of the plain records.
+/// Name of the compression of chunks by Zstandard. The name of plain chunks is empty. A chunk's CRC and
+/// uncompressed size are those of the uncompressed records.
 inline constexpr std::string_view mcap_zstd = "zstd";
 
 /// Format of a channel's messages.
@@ -65,8 +65,8 @@ struct McapChannel {
   bool operator==(const McapChannel&) const = default;
 };
 
-/// Returns the CRC-32 of earlier bytes, whose CRC is `crc`, followed by `bytes`. With `crc` 0 there are no
-/// earlier bytes.
+/// Returns the CRC-32 of earlier bytes, whose CRC is `crc`, followed by `bytes`. `crc` 0 means that there are
+/// no earlier bytes.
 [[nodiscard]] std::uint32_t mcap_crc(std::uint32_t crc, std::span<const std::byte> bytes);
 
 /// Growing buffer of bytes in MCAP's byte order, which is little-endian.
@@ -81,18 +81,18 @@ class McapBytes {
     put_at(grow(sizeof value), value);
   }
   void put(std::span<const std::byte> data);
-  /// Puts the length in four bytes, then the text. Throws std::length_error if the text has 2^32 bytes or
-  /// more.
+  /// Appends the length as four bytes, and then the text. Throws std::length_error if the text has 2^32 bytes
+  /// or more.
   void put(std::string_view text);
   void put(const std::string& text) { put(std::string_view(text)); }
 
-  /// Puts a record with the output of `write` as content.
+  /// Appends a record. Its content is the output of `write`.
   template <typename Write>
   void record(McapOp op, Write write) {
     put(static_cast<std::uint8_t>(op));
     measured<std::uint64_t>(write);
   }
-  /// Puts the output of `write`, preceded by its length in bytes as a Length.
+  /// Appends the output of `write`, preceded by its length in bytes as a value of type Length.
   template <std::unsigned_integral Length, typename Write>
   void measured(Write write) {
     const std::size_t at = grow(sizeof(Length));
@@ -103,7 +103,7 @@ class McapBytes {
   }
 
  private:
-  /// Adds space at the end; returns its start.
+  /// Adds `count` bytes at the end and returns their start.
   std::size_t grow(std::size_t count);
   template <std::unsigned_integral T>
   void put_at(std::size_t at, T value) {

@@ -25,7 +25,7 @@ McapWriter::Config checked(McapWriter::Config config) {
 template <typename T>
 std::uint16_t next_id(const std::vector<T>& list) {
   if (list.size() >= std::numeric_limits<std::uint16_t>::max()) {
-    throw std::length_error("a log holds at most 65535 channels");
+    throw std::length_error("a log can have at most 65535 channels");
   }
   return static_cast<std::uint16_t>(list.size() + 1);
 }
@@ -63,7 +63,7 @@ std::uint16_t McapWriter::add_channel(McapChannel channel) {
   require_open();
   const auto same_topic = [&](const auto& other) { return other.description.topic == channel.topic; };
   if (channel.topic.empty() || std::ranges::any_of(summary_.channels, same_topic)) {
-    throw std::invalid_argument("a channel needs a topic of its own, not \"" + channel.topic + "\"");
+    throw std::invalid_argument("a channel needs a new, non-empty topic, not \"" + channel.topic + "\"");
   }
   const std::uint16_t id = next_id(summary_.channels);
   const McapSchema schema = channel.schema;

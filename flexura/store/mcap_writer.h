@@ -15,18 +15,17 @@ namespace flexura {
 
 /// Writes a new log (docs/log-format.md): messages on channels, collected into chunks. A full chunk is passed
 /// to the operating system in one write. If the process is killed, the log is therefore readable up to its
-/// last complete chunk. Equal calls give equal bytes
-/// with the same version of libzstd. Every call that writes throws std::system_error with
-/// the path on a system error, such as a full disk. The content written before stays readable, and the writer
-/// accepts nothing more.
+/// last complete chunk. Equal calls give equal bytes if the version of libzstd is equal. Every call that
+/// writes throws std::system_error with the path on a system error, such as a full disk. The content written
+/// before remains readable, and the writer accepts no more messages.
 class McapWriter {
  public:
   /// Layout of the file.
   struct Config {
-    /// A chunk is closed when its messages reach this number of bytes (1 to 2^30); a larger message is a
+    /// A chunk is closed when its messages reach this number of bytes (1 to 2^30). A larger message is a
     /// separate chunk.
     std::size_t chunk_size = std::size_t{256} * 1024;
-    /// Compresses chunks by zstd where that makes them smaller. Otherwise every chunk is plain.
+    /// Whether to compress a chunk by zstd if this makes the chunk smaller.
     bool compress = true;
   };
 
@@ -34,7 +33,7 @@ class McapWriter {
   /// already exists or cannot be created, std::invalid_argument for a chunk size out of range.
   explicit McapWriter(const std::filesystem::path& path) : McapWriter(path, Config{}) {}
   McapWriter(const std::filesystem::path& path, Config config);
-  /// Closes the log and ignores failures; call close() to detect them.
+  /// Closes the log and ignores failures. Call close() to detect failures.
   ~McapWriter();
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
@@ -63,7 +62,7 @@ class McapWriter {
 
   void append(const McapBytes& out);
   void require_open() const;
-  /// Puts the current chunk and completes its entry in the summary.
+  /// Appends the current chunk to `out` and completes the chunk's entry in the summary.
   void put_chunk(McapBytes& out, McapChunkIndex& chunk) const;
   void put_message_indexes(McapBytes& out, McapChunkIndex& chunk) const;
 

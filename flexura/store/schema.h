@@ -11,9 +11,9 @@ namespace flexura {
 /// files. A quantity has one property per spelling of its unit, each with the range in that unit.
 [[nodiscard]] Node json_schema(const TableInfo& info);
 
-/// Returns a Markdown reference of the document: a section per table, a row per field. A table that occurs
-/// again has a link to its first section. Fields that all alternatives have, or that make up another table,
-/// are described once.
+/// Returns a Markdown reference of the document: one section per table, one row per field. If a table occurs
+/// again, the reference links to the table's first section. Fields that all alternatives share, or that form
+/// another table, are described once.
 [[nodiscard]] std::string markdown_reference(const TableInfo& info);
 
 }  // namespace flexura

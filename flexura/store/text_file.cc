@@ -70,7 +70,7 @@ std::filesystem::path file_inside(const std::filesystem::path& folder, const std
     problems.front().what = what;
     throw InputError(std::move(problems));
   };
-  if (name.empty() || name.find('\0') != std::string::npos) fail("expected a file's name");
+  if (name.empty() || name.find('\0') != std::string::npos) fail("expected a file name");
   std::error_code error;
   const auto root = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error);
   if (error) fail(fmt::format("cannot read its folder: {}", error.message()));

@@ -8,7 +8,7 @@
 namespace flexura {
 
 /// Returns true if nothing exists at a path. A path that cannot be checked, such as a link to itself, counts
-/// as existing; the attempt to open it then reports the reason.
+/// as existing. The attempt to open it then reports the reason.
 [[nodiscard]] bool is_missing(const std::filesystem::path& path);
 
 /// Returns the bytes of a file. Throws InputError if the file cannot be read, is not a regular file or has
@@ -23,8 +23,8 @@ namespace flexura {
 /// cannot be written.
 void write_new_file(const std::filesystem::path& file, std::string_view text);
 
-/// Writes a new or an existing file. An existing file keeps its old content until the new content is
-/// complete. Throws std::runtime_error with the path on a system error.
+/// Writes a new or an existing file. An existing file keeps its old content until the new content has been
+/// written completely. Throws std::runtime_error with the path on a system error.
 void replace_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace flexura

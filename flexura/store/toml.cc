@@ -156,13 +156,15 @@ void lay_upon_includes(Node& document, const std::filesystem::path& file, Includ
   const auto* names = include->as<Node::Array>();
   if (names == nullptr) throw InputError({{include->where, "include: expected an array of file names"}});
   if (including.open.size() > max_include_depth) {
-    throw InputError({{include->where, fmt::format("include: more than {} files deep", max_include_depth)}});
+    throw InputError(
+        {{include->where, fmt::format("include: nested more than {} files deep", max_include_depth)}});
   }
   Node below{Node::Table{}, document.where};
   std::vector<Problem> problems;
   for (const Node& name : *names) {
     if (++including.files > max_included_files) {
-      throw InputError({{name.where, fmt::format("include: more than {} files in all", max_included_files)}});
+      throw InputError(
+          {{name.where, fmt::format("include: more than {} files in total", max_included_files)}});
     }
     try {
       const std::filesystem::path included = included_file(name, file.parent_path());
@@ -214,19 +216,19 @@ std::string plain_words(std::string_view description) {
     return "the text does not end on its line: expected a closing quote, and no control characters before it";
   if (is_repeated_key(description)) {
     const std::string_view name = description.substr(std::min(description.find('\''), description.size()));
-    return fmt::format("{} is written twice: expected each key once", name);
+    return fmt::format("{} occurs twice: expected each key once", name);
   }
   if (description.find("could not determine value type") != std::string_view::npos)
     return "no value: expected a number, a text in quotes, true or false, an array or a table";
   constexpr std::string_view before = "Error while parsing ", after = ": encountered end-of-file";
   if (description.starts_with(before) && description.ends_with(after))
-    return fmt::format("the file ends within this {}: expected its end",
+    return fmt::format("the file ends within this {}: expected it to be closed",
                        description.substr(before.size(), description.size() - before.size() - after.size()));
   if (!description.starts_with(before)) return std::string(description);
   const std::string_view rest = description.substr(before.size());
   const std::string_view what = rest.substr(0, rest.find(": "));
   if (what.find("integer") != std::string_view::npos || what.find("floating-point") != std::string_view::npos)
-    return "not a number: expected digits alone; a unit is part of the key, as in length_cm = 30";
+    return "not a number: expected only digits; a unit is part of the key, as in length_cm = 30";
   if (what.size() == rest.size()) return std::string(rest);
   return fmt::format("not a valid {}: {}", what, rest.substr(what.size() + 2));
 }

@@ -44,8 +44,10 @@ TEST(ParseToml, ReportsWhatIsNotToml) {
 }
 
 TEST(ParseToml, SaysWhatIsExpectedWhereTheTextEndsOrHoldsAWord) {
-  EXPECT_EQ(toml_error_of("a ="), "x.toml:1:4: the file ends within this key-value pair: expected its end");
-  EXPECT_EQ(toml_error_of("a = [1,"), "x.toml:1:8: the file ends within this array: expected its end");
+  EXPECT_EQ(toml_error_of("a ="),
+            "x.toml:1:4: the file ends within this key-value pair: expected it to be closed");
+  EXPECT_EQ(toml_error_of("a = [1,"),
+            "x.toml:1:8: the file ends within this array: expected it to be closed");
   EXPECT_EQ(toml_error_of("a = b"),
             "x.toml:1:5: no value: expected a number, a text in quotes, true or false, an array or a table");
 }
@@ -53,7 +55,7 @@ TEST(ParseToml, SaysWhatIsExpectedWhereTheTextEndsOrHoldsAWord) {
 TEST(ParseToml, SaysOfANumberWithAUnitWhereUnitsBelong) {
   for (const char* text : {"a = 30cm", "a = 1.5m", "a = 0x1g"})
     EXPECT_THAT(toml_error_of(text),
-                HasSubstr("not a number: expected digits alone; a unit is part of the key"))
+                HasSubstr("not a number: expected only digits; a unit is part of the key"))
         << text;
   EXPECT_EQ(toml_error_of("a = [1 2]").find("Error while"), std::string::npos);
 }
@@ -171,7 +173,7 @@ TEST_F(TomlFile, RefusesBadIncludesWithALine) {
   for (int i = 0; i < 101; ++i) crowd += "'leaf.toml', ";
   write("leaf.toml", "x = 1");
   write("crowd.toml", "include = [" + crowd + "]");
-  EXPECT_THAT(error("crowd.toml"), HasSubstr("include: more than 100 files in all"));
+  EXPECT_THAT(error("crowd.toml"), HasSubstr("include: more than 100 files in total"));
   // Fifteen includes per file, eight levels: without a total limit, reading would take years.
   for (int i = 0; i < 8; ++i) {
     std::string next;
@@ -179,7 +181,7 @@ TEST_F(TomlFile, RefusesBadIncludesWithALine) {
     write("fan" + std::to_string(i) + ".toml", "include = [" + next + "]");
   }
   write("fan8.toml", "x = 1");
-  EXPECT_THAT(error("fan0.toml"), HasSubstr("include: more than 100 files in all"));
+  EXPECT_THAT(error("fan0.toml"), HasSubstr("include: more than 100 files in total"));
   write("missing.toml", "include = ['nothing.toml']");
   write("number.toml", "include = [3]");
   write("word.toml", "include = 'circle.toml'");
@@ -207,9 +209,9 @@ TEST_F(TomlFile, RefusesBadIncludesWithALine) {
   for (int i = 0; i < 10; ++i)
     write("deep" + std::to_string(i) + ".toml", "include = ['deep" + std::to_string(i + 1) + ".toml']");
   write("deep10.toml", "x = 1");
-  EXPECT_THAT(error("deep0.toml"), HasSubstr("include: more than 8 files deep"));
+  EXPECT_THAT(error("deep0.toml"), HasSubstr("include: nested more than 8 files deep"));
   write("nameless.toml", "include = ['']");
-  EXPECT_THAT(error("nameless.toml"), HasSubstr("nameless.toml:1:12: include: expected a file's name"));
+  EXPECT_THAT(error("nameless.toml"), HasSubstr("nameless.toml:1:12: include: expected a file name"));
   EXPECT_THAT(error("missing.toml"), HasSubstr("no file \"nothing.toml\""));
   EXPECT_THAT(error("number.toml"), HasSubstr("expected file names in quotes"));
   EXPECT_THAT(error("word.toml"), HasSubstr("expected an array of file names"));

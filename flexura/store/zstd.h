@@ -7,12 +7,11 @@
 
 namespace flexura {
 
-/// Returns the bytes compressed into one frame of Zstandard (RFC 8878). Equal bytes give equal frames with
-/// the same version of libzstd. Throws std::runtime_error if libzstd fails.
+/// Returns the bytes compressed into one frame of Zstandard (RFC 8878). Equal bytes give equal frames if the
+/// version of libzstd is equal. Throws std::runtime_error if libzstd fails.
 [[nodiscard]] std::vector<std::byte> zstd(std::span<const std::byte> bytes);
 
-/// Bytes in memory that are not initialised before they are written: memory that was never written takes no
-/// space.
+/// Bytes in memory that are not initialised. Memory that was never written takes no space.
 struct ByteBuffer {
   std::unique_ptr<std::byte[]> start;  ///< May be null if `size` is 0.
   std::size_t size = 0;                ///< In bytes.
@@ -21,9 +20,9 @@ struct ByteBuffer {
   [[nodiscard]] std::span<const std::byte> bytes() const { return {start.get(), size}; }
 };
 
-/// Returns the content of frames of Zstandard that must decompress to exactly `size` bytes. Never writes more
-/// than those, and refuses, before it takes any memory, a size that so few bytes cannot hold. Throws
-/// std::runtime_error with the reason for anything else.
+/// Returns the content of frames of Zstandard that must decompress to exactly `size` bytes. It never writes
+/// more bytes. Before it allocates memory, it refuses a size that the frames cannot contain. Throws
+/// std::runtime_error with the reason for invalid frames.
 [[nodiscard]] ByteBuffer unzstd(std::span<const std::byte> frames, std::size_t size);
 
 }  // namespace flexura

@@ -40,7 +40,7 @@ struct ImageStudy {
   /// Returns whether the projection formulas give every feature for the value i.
   [[nodiscard]] bool is_seen(std::size_t i) const;
   /// Returns the largest differences between formulas and renderer: of lengths, px, and of the ratio of axes.
-  /// Infinite if only one of the two has a value.
+  /// A difference is infinite if only one of the two has a value.
   [[nodiscard]] std::array<double, 2> largest_difference() const;
   /// Number of lengths measured in pictures, and the root mean square of their differences from the formulas,
   /// px. Both are 0 without measurements.

@@ -19,9 +19,9 @@ class MeasuredTarget {
   /// `stream` determines the noise of the pictures by a seed and a camera index.
   MeasuredTarget(const StudyTarget& target, const SensorConfig& sensor, const NoiseStream& stream);
 
-  /// Measures the target in picture number `frame`; each picture has independent noise. The result has no
-  /// points if the square is not entirely in the image, or is seen edge-on. The positions from the projection
-  /// formulas identify the edges.
+  /// Measures the target in picture number `frame`. Each picture has independent noise. The result has no
+  /// points if the square is not entirely in the image, or if the camera is in the square's plane. The edges
+  /// are identified by their positions from the projection formulas.
   [[nodiscard]] TargetImage image(const View& view, std::uint64_t frame);
 
  private:

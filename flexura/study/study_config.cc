@@ -32,10 +32,10 @@ const std::vector<Parameter>& parameters() {
       {"pan", &V::pan, Unit::radian, turn_range, "Pan angle of the head, positive to the camera's left."},
       {"tilt", &V::tilt, Unit::radian, turn_range, "Tilt angle of the head, positive upwards."},
       {"roll", &V::roll, Unit::radian, turn_range,
-       "Additional rotation of the camera about its optical axis, clockwise as seen from behind."},
+       "Additional rotation of the camera about its optical axis, clockwise seen from behind."},
       {"orbit", &V::orbit, Unit::radian, turn_range,
-       "Rotation of the camera upwards about the target's horizontal axis, looking at its centre: the "
-       "paper's tilt. At 0 the camera is at its initial pose."},
+       "Rotation of the camera upwards about the target's horizontal axis, with the camera looking at the "
+       "target's centre: the paper's tilt. At 0, the camera is at its initial pose."},
       {"distance",
        &V::distance,
        Unit::metre,
@@ -47,7 +47,11 @@ const std::vector<Parameter>& parameters() {
        "Position of the mount along Y, at constant orientation."},
       {"mount_z", &V::mount_z, Unit::metre, place_range,
        "Position of the mount along Z, at constant orientation."},
-      {"zoom", &V::zoom, Unit::none, {.min = -1e9, .max = 1e9}, "Zoom ratio or motor count."},
+      {"zoom",
+       &V::zoom,
+       Unit::none,
+       {.min = -1e9, .max = 1e9},
+       "Zoom ratio, or motor position if the lens table has counts."},
       {"stage_x", &V::stage_x, Unit::metre, slide_range, "Stage position to the right."},
       {"stage_y", &V::stage_y, Unit::metre, slide_range, "Stage position downwards."},
       {"stage_z", &V::stage_z, Unit::metre, slide_range, "Stage position forwards."},
@@ -81,7 +85,7 @@ const std::vector<Parameter>& parameters() {
 
 void check_values(const Variation& variation, const Camera& camera, const std::string& path, Reader& reader) {
   if (variation.values[0] == variation.values[1])
-    reader.problem_at(path, "has the same value twice: expected different first and last values");
+    reader.problem_at(path, "has two equal values: expected different first and last values");
   const AxisConfig* axis = moved_axis(camera, variation.parameter);
   if (axis == nullptr) return;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -121,9 +125,9 @@ const Table<StudyTargetConfig>& fields_of(const StudyTargetConfig*) {
                                "parallel to OX and OY in the XOY plane.")
           .field("center", &StudyTargetConfig::center,
                  {.meaning = "Centre.", .unit = Unit::metre, .range = between(-1e6, 1e6)})
-          .field(
-              "normal", &StudyTargetConfig::normal,
-              {.meaning = "Normal of the target's plane; any length above 0.", .range = between(-1e6, 1e6)})
+          .field("normal", &StudyTargetConfig::normal,
+                 {.meaning = "Normal of the target's plane. Its length must be above 0.",
+                  .range = between(-1e6, 1e6)})
           .field("radius", &StudyTargetConfig::radius,
                  {.meaning = "Radius of the circle.", .unit = Unit::metre, .range = between(1e-6, 1e6)})
           .check([](const StudyTargetConfig& target, Reader& reader) {
@@ -136,8 +140,8 @@ const Table<StudyTargetConfig>& fields_of(const StudyTargetConfig*) {
 const Table<StudyTask>& fields_of(const StudyTask*) {
   static const auto table =
       Table<StudyTask>("study",
-                       "Image distances of a target as one camera parameter varies, as tables and plots. The "
-                       "arm keeps its shape and no time passes.")
+                       "Computes image distances of a target while one camera parameter varies, as tables "
+                       "and plots. The arm keeps its shape, and no time passes.")
           .field("name", &StudyTask::name,
                  {.meaning = "Name of the task in results.", .default_text = "its kind"})
           .field("camera", &StudyTask::camera,
@@ -149,7 +153,7 @@ const Table<StudyTask>& fields_of(const StudyTask*) {
               {.meaning = "Number of values, equally spaced from first to last.", .range = between(2, 10000)})
           .field("measure", &StudyTask::measure,
                  {.meaning = "Whether the square is also rendered and measured in pictures, for a third "
-                             "column. Takes a tenth of a second per value."})
+                             "column. It takes 0.1 s of computing time per value."})
           .field("target", &StudyTask::target, {.meaning = "Target in the camera's view."});
   return table;
 }
@@ -171,7 +175,8 @@ void check_study(const StudyTask& task, const std::vector<CameraConfig>& cameras
                  Reader& reader) {
   const std::vector<Variation> varied = variations(task.vary);
   if (varied.empty()) {
-    reader.problem_at(path + ".vary", "names no parameter: expected one, such as orbit_deg = [-60, 60]");
+    reader.problem_at(path + ".vary",
+                      "has no parameter: expected one parameter, such as orbit_deg = [-60, 60]");
     return;
   }
   for (std::size_t i = 1; i < varied.size(); ++i) {
@@ -192,7 +197,7 @@ void check_study(const StudyTask& task, const std::vector<CameraConfig>& cameras
       varied.front().parameter == &VaryConfig::orbit || varied.front().parameter == &VaryConfig::distance;
   if (needs_distance && eye == Eigen::Vector3d(task.target.center.data())) {
     reader.problem_at(path + ".target.center",
-                      "is the camera's own position: the camera cannot orbit it or move away from it");
+                      "is the camera's position: the camera cannot orbit this point or move away from it");
   }
 }
 

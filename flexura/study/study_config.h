@@ -20,10 +20,11 @@ struct VaryConfig {
   Values distance;  ///< Distance of the camera from the target's centre, m.
   /// Coordinates of MountConfig::position, m; the camera keeps its orientation.
   Values mount_x, mount_y, mount_z;
-  Values zoom;                          ///< Zoom position.
-  Values stage_x, stage_y, stage_z;     ///< Stage offset, m.
-  Values focal_length, fx, fy, cx, cy;  ///< Intrinsics at the initial zoom, px; focal_length sets fx and fy.
-  Values k1, k2, p1, p2, k3;            ///< Distortion of the lens at the initial zoom.
+  Values zoom;                       ///< Zoom position.
+  Values stage_x, stage_y, stage_z;  ///< Stage offset, m.
+  /// Intrinsics at the initial zoom, px. `focal_length` sets fx and fy.
+  Values focal_length, fx, fy, cx, cy;
+  Values k1, k2, p1, p2, k3;                     ///< Distortion of the lens at the initial zoom.
   Values tilt_axis_x, tilt_axis_y, tilt_axis_z;  ///< Coordinates of HeadConfig::tilt_axis, m.
   Values pupil_x, pupil_y, pupil_z;              ///< Coordinates of HeadConfig::pupil, m.
   Values pupil_shift;                            ///< HeadConfig::pupil_shift, m.
@@ -40,8 +41,9 @@ struct Variation {
 /// Target of a study: a circle with an inscribed square.
 struct StudyTargetConfig {
   std::array<double, 3> center = {0, 0, 0};  ///< Centre in W, m.
-  std::array<double, 3> normal = {0, 0, 1};  ///< Normal of the target's front, in W; any length above 0.
-  double radius = 0.5;                       ///< Radius of the circle, m; at least 1e-6.
+  /// Normal of the target's front, in W. Its length must be above 0.
+  std::array<double, 3> normal = {0, 0, 1};
+  double radius = 0.5;  ///< Radius of the circle, m; at least 1e-6.
 };
 
 /// A task with `kind = "study"`: computes the image of a target for different values of one camera parameter.
@@ -50,7 +52,7 @@ struct StudyTask {
   std::string name;
   std::string camera;  ///< Name of the camera; "" for the first camera.
   VaryConfig vary;
-  std::int64_t points = 101;  ///< Number of evenly spaced values, ends included.
+  std::int64_t points = 101;  ///< Number of evenly spaced values, including both ends.
   bool measure = false;       ///< Whether features are also measured in rendered pictures of the square.
   StudyTargetConfig target;
 };
@@ -65,7 +67,7 @@ const Table<StudyTask>& fields_of(const StudyTask*);
 /// Returns the camera of a study; null if no camera has the study's camera name.
 [[nodiscard]] const CameraConfig* camera_of(const StudyTask& task, const std::vector<CameraConfig>& cameras);
 
-/// Reports to `reader` why a study is impossible with the given cameras. `path` is the study's place in the
+/// Reports to `reader` why a study is impossible with the given cameras. `path`: path of the study in the
 /// document, such as "task[2]".
 void check_study(const StudyTask& task, const std::vector<CameraConfig>& cameras, const std::string& path,
                  Reader& reader);

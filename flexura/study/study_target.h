@@ -26,7 +26,8 @@ struct TargetImage {
 };
 
 /// A study's target in the world: a circle with an inscribed square. The target's frame F has a horizontal x
-/// axis, y as vertical as the plane allows, and z along the normal. For a horizontal plane, x is W's X.
+/// axis, a y axis that is as nearly vertical as possible, and z along the normal. For a horizontal plane, x
+/// is W's X.
 class StudyTarget {
  public:
   explicit StudyTarget(const StudyTargetConfig& config);
@@ -44,10 +45,10 @@ class StudyTarget {
   /// Returns the target's image, computed by the projection formulas.
   [[nodiscard]] TargetImage projected(const View& view) const;
 
-  /// Returns the target's image, computed by the renderer: the image points whose rays, traced to a screen in
-  /// the target's plane, hit the target's points. The search for a point starts at the middle of the nearest
-  /// pixel. Points are std::nullopt if the rays are parallel to the screen. `renderer` must be prepared again
-  /// before other uses.
+  /// Returns the target's image, computed by the renderer: the image points whose rays hit the target's
+  /// points on a screen in the target's plane. The search for a point starts at the middle of the nearest
+  /// pixel. Points are std::nullopt if the rays are parallel to the screen. Afterwards, `renderer` must be
+  /// prepared again before other uses.
   [[nodiscard]] TargetImage rendered(const View& view, Renderer& renderer) const;
 
  private:

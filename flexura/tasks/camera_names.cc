@@ -40,7 +40,7 @@ void check_two_cameras(const std::vector<std::string>& names, const std::vector<
                                     fmt::join(quoted_names(cameras), ", ")));
   }
   if (names.size() == 2 && names[0] == names[1])
-    reader.problem_at(path + ".cameras", "names one camera twice: expected two");
+    reader.problem_at(path + ".cameras", "names one camera twice: expected two different cameras");
 }
 
 }  // namespace flexura

@@ -15,7 +15,7 @@ namespace flexura {
 [[nodiscard]] std::array<std::size_t, 2> two_cameras(const std::vector<std::string>& names,
                                                      const std::vector<CameraConfig>& cameras);
 
-/// Reports why the task at `path` cannot use two cameras, if so.
+/// Reports an error if the task at `path` cannot use two cameras.
 void check_two_cameras(const std::vector<std::string>& names, const std::vector<CameraConfig>& cameras,
                        const std::string& path, Reader& reader);
 

@@ -11,7 +11,7 @@ namespace flexura {
 /// Returns a plot for reports with a camera's picture, over which outlines can be drawn.
 [[nodiscard]] ImagePlot photograph(const Picture& picture, const SensorConfig& sensor, std::string heading);
 
-/// Returns a cross at a point `at` of the picture, px, with arms of `size` px, for use in an outline.
+/// Returns a cross at the pixel `at` for use in an outline. Each of its four arms is `size` px long.
 [[nodiscard]] ImageOutline::Line cross(const Eigen::Vector2d& at, double size);
 
 }  // namespace flexura

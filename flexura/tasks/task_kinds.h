@@ -19,8 +19,8 @@
 
 namespace flexura {
 
-/// One `[[task]]` of a file, of any kind. The configuration header of each kind declares its table of fields,
-/// and these functions, which the functions below call:
+/// One `[[task]]` of a file, of any kind. The header that declares the configuration of a kind also declares
+/// its table of fields and these functions. The functions below call them:
 ///   void check_keys(const KIND&, const Setup&, const std::string& path, Reader&);
 ///   std::unique_ptr<TaskRunner> runner_of(const KIND&, const Setup&, TaskLabel);
 /// Two further functions are optional:
@@ -35,11 +35,11 @@ using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, Exp
     const TaskConfig& task);  ///< Returns the task's name, or its kind if it has no name.
 [[nodiscard]] std::string_view task_kind(const TaskConfig& task);  ///< Returns the kind: "move", "servo", ...
 
-/// Reports why the task at `path` ("task[2]") does not fit the setup.
+/// Reports as errors why the task at `path` ("task[2]") does not fit the setup.
 void check_task(const TaskConfig& task, const Setup& setup, const std::string& path, Reader& reader);
 
-/// Reads the files that the task at `path` names, from the setup's folder or below. `written`: the task as
-/// written in the file. Adds errors in these files to `problems`.
+/// Reads the files that the task at `path` refers to, in the setup's folder or below. `written`: the task as
+/// written in the experiment file. Adds errors in the read files to `problems`.
 void read_task_files(TaskConfig& task, const Setup& setup, const Node& written, const std::string& path,
                      std::vector<Problem>& problems);
 
@@ -47,7 +47,7 @@ void read_task_files(TaskConfig& task, const Setup& setup, const Node& written, 
 [[nodiscard]] std::unique_ptr<TaskRunner> task_runner(const TaskConfig& task, const Setup& setup,
                                                       std::size_t number);
 
-/// Returns the tables that exports make from the tasks' messages.
+/// Returns the tables that `flexura export` makes from the tasks' messages in the log.
 [[nodiscard]] LogTables task_tables();
 
 }  // namespace flexura

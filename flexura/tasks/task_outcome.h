@@ -17,7 +17,9 @@ struct TaskOutcome {
   bool is_reached = true;  ///< Whether the task was successful.
   std::string text;        ///< Result in one line without the name: "converged in 1.9 s, ...".
   std::optional<double>
-      size;  ///< Size of the error, for comparison with other tasks of this noun; missing: not compared.
+      /// Size of the error, for comparison with other tasks that have the same noun; missing: the task is not
+      /// compared.
+      size;
   std::string brief = {};      ///< Shorter text for totals of several tasks; "": `text` is used.
   std::string size_text = {};  ///< The error `size` in words: "0.08 % of the length rms".
 
@@ -29,8 +31,9 @@ struct TaskOutcome {
 [[nodiscard]] TaskOutcome not_begun(std::string task, std::string kind, std::string noun,
                                     std::string success);
 
-/// Returns all outcomes in one line, grouped by nouns. A noun with one task has that task's line. A noun with
-/// several tasks has a total, "3 of 3 servos converged, worst 0.08 % of the length rms". "" without outcomes.
+/// Returns all outcomes in one line, grouped by nouns; "" without outcomes. For a single task with a noun,
+/// the line has its outcome. For several tasks, it has a total such as "3 of 3 servos converged, worst 0.08 %
+/// of the length rms".
 [[nodiscard]] std::string total_of(const std::vector<TaskOutcome>& outcomes);
 
 /// Returns the outcomes as a list of tables: `task`, `kind`, `reached`, `text`.

@@ -31,37 +31,37 @@ namespace flexura {
 
 /// A target of a task that the arm does not reach.
 struct MissedTarget {
-  std::string place;    ///< Place of the target in the task: "target[1]"; "" if there is only one.
+  std::string place;    ///< Path of the target in the task: "target[1]"; "" if the task has only one target.
   double distance = 0;  ///< Remaining distance, m.
   double limit = 0;     ///< Largest accepted distance, m.
   std::optional<Eigen::Vector3d> position =
-      {};  ///< Target of the tip in W, m; missing if the target is not a tip position.
+      {};  ///< Target position of the tip in W, m; missing for other targets.
 };
 
 /// Planned motion of a task.
 struct TaskPlan {
   MotionPtr motion;  ///< Motion of the arm, never null; its times count from the task's start.
   bool is_steered =
-      false;  ///< Whether cameras control the motion; a limiter then decides the commands during the run.
+      false;  ///< Whether cameras control the motion; a limiter then checks each command during the run.
   bool is_planned =
-      true;  ///< Whether the motion is known before the run; that of a servo is known only afterwards.
+      true;  ///< Whether the motion is known before the run. A servo's motion is known only afterwards.
   std::vector<MissedTarget> missed = {};
 };
 
 /// Model of a rig during a run, which calibrations update.
 struct NominalRig {
   RigModel model;         ///< Model from the file, or from a calibration.
-  bool is_found = false;  ///< Whether mounts and lenses were calibrated by the default method.
+  bool is_found = false;  ///< Whether the default method has calibrated mounts and lenses.
 };
 
-/// Resources of a task that the rig performs.
+/// Resources for a task that the rig performs.
 struct TaskStage {
   Rig& rig;
   NominalRig& nominal;
   RunLog& log;
   Progress& progress;
   const RecordSteps& record_steps;
-  /// Returns the motor positions after the arm's motion through these states; std::nullopt without a command
+  /// Returns the motor positions after the arm has moved through these states; std::nullopt without a command
   /// list.
   std::function<std::optional<std::vector<std::int64_t>>(std::span<const ArmState> way)> motors_after;
 };
@@ -73,9 +73,9 @@ struct TaskEnd {
       failure;  ///< Why the run ends with this task; std::nullopt if the run continues.
 };
 
-/// Estimated work of a task, for the display of progress. Only the ratios matter.
+/// Estimated work of a task, for the display of progress. Only the ratios between its parts matter.
 struct TaskWork {
-  double duration = 0;    ///< Duration of the task, s, on which the rig's part of the work depends.
+  double duration = 0;    ///< Duration of the task, s. The rig's part of the work depends on it.
   double simulating = 0;  ///< Computing time of TaskRunner::simulate, s.
   double performing = 0;  ///< Computing time of TaskRunner::perform, s.
   double finishing = 0;   ///< Computing time of TaskRunner::finish, s.
@@ -83,9 +83,11 @@ struct TaskWork {
 
 /// Time at which a task's motion is known.
 enum class TaskMotionSource : std::uint8_t {
-  known,      ///< Known from the state at the task's start.
-  simulated,  ///< Known after a simulation from the state at the task's start (TaskRunner::simulate).
-  by_rig,     ///< Known after the rig has performed the task (TaskRunner::perform).
+  known,  ///< The motion is known from the state at the task's start.
+  /// The motion is known after a simulation that begins with the state at the task's start
+  /// (TaskRunner::simulate).
+  simulated,
+  by_rig,  ///< The motion is known after the rig has performed the task (TaskRunner::perform).
 };
 
 /// One task of an experiment, from its plan to its results. Each kind of task has a folder in tasks/ with a
@@ -103,15 +105,15 @@ class TaskRunner {
   /// Returns an estimate of the task's work.
   [[nodiscard]] virtual TaskWork work() const = 0;
 
-  /// Returns the plan for an arm in the state `from`. `done`: the performed motion if it is known, otherwise
-  /// null. With null the plan has the largest possible motion.
+  /// Returns the plan for an arm in the state `from`. `done`: the performed motion, or null if it is not
+  /// known. With null, the plan contains the largest possible motion.
   [[nodiscard]] virtual TaskPlan plan(const ArmState& from, const MotionPtr& done) const = 0;
 
-  /// For simulated tasks: simulates the task, which begins at `start` (s).
+  /// For tasks with TaskMotionSource::simulated: simulates the task, which begins at `start` (s).
   [[nodiscard]] virtual TaskEnd simulate(const ArmState& /*from*/, double /*start*/, Progress& /*progress*/) {
     throw std::logic_error("this task is not simulated");
   }
-  /// For tasks of the rig: performs the task now. `from`: last commanded state of the arm.
+  /// For tasks with TaskMotionSource::by_rig: performs the task now. `from`: last commanded state of the arm.
   [[nodiscard]] virtual TaskEnd perform(const ArmState& /*from*/, TaskStage& /*stage*/) {
     throw std::logic_error("this task is not done by the rig");
   }
@@ -121,18 +123,18 @@ class TaskRunner {
   virtual void add_caveats(const ArmState& /*from*/, const std::string& /*ended_by*/,
                            SafetyReport& /*report*/) const {}
 
-  /// For simulated tasks: logs the task's results up to `time` (s). Called when the run has reached this
-  /// time.
+  /// For tasks with TaskMotionSource::simulated: logs the task's results up to `time` (s). Called when the
+  /// run has reached this time.
   virtual void publish_up_to(double /*time*/, RunLog& /*log*/) {}
 
-  /// Writes the task's files into the results folder. `is_cancelled`: the run was cancelled, so that
-  /// remaining computations are skipped.
+  /// Writes the task's files into the results folder. `is_cancelled`: the run was cancelled; remaining
+  /// computations are then skipped.
   virtual void finish(const std::filesystem::path& /*results*/, bool /*is_cancelled*/,
                       Progress& /*progress*/) {}
 
-  /// Returns the result of the task in words. A task that did not begin is not reached, with the text "not
-  /// begun". `motion`: commanded motion with times from the task's start. If the task's motion is known from
-  /// its start, the caller ensures that it was played.
+  /// Returns the result of the task in words. For a task that did not begin, the result is not reached, with
+  /// the text "not begun". `motion`: commanded motion, with times from the task's start. For tasks with
+  /// TaskMotionSource::known, the caller ensures that the motion was played.
   [[nodiscard]] virtual TaskOutcome outcome(const Motion& motion) const = 0;
   /// Returns the name of the list for tasks of this kind in the summary, such as "servos"; "" if there is no
   /// list.
@@ -140,11 +142,11 @@ class TaskRunner {
   /// Returns the task's item in that list; std::nullopt without a result.
   [[nodiscard]] virtual std::optional<Node> summary() const { return std::nullopt; }
   /// Returns the targets of the task for the report's 3D view, in the order of time. `motion`: commanded
-  /// motion. Times count from the task's start, as those of `motion`.
+  /// motion. Times count from the task's start.
   [[nodiscard]] virtual std::vector<ReportSpace::Target> targets(const Motion& /*motion*/) const {
     return {};
   }
-  /// Returns the task's chapter of the report; std::nullopt without a result. `number`: index among the tasks
+  /// Returns the report's chapter on the task; std::nullopt without a result. `number`: index among the tasks
   /// of this kind, from 0, for names of figures.
   [[nodiscard]] virtual std::optional<Chapter> chapter(std::size_t /*number*/) const { return std::nullopt; }
 

@@ -154,7 +154,7 @@ class LightArm : public LiveSessionTest {};
 TEST_F(LightArm, HasNothingToPullOrToSwitchOff) {
   EXPECT_EQ(session_.hello().controls.find("actuators"), nullptr);
   EXPECT_FALSE(*session_.hello().controls.find("weight")->as<bool>());
-  EXPECT_THAT(ask(WeightRequest{false}).error, HasSubstr("this arm has no weight or loads"));
+  EXPECT_THAT(ask(WeightRequest{false}).error, HasSubstr("this arm has neither weight nor loads"));
   EXPECT_EQ(ask(tendons({0, 0})).error, "tendons: the arm has no drive");
   EXPECT_TRUE(pass(0.1).actuators.empty());
 }

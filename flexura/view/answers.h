@@ -12,7 +12,7 @@ namespace flexura {
 /// Returns an empty table, {}.
 [[nodiscard]] Node nothing();
 /// Returns the answer to the request `point`: the pose of the backbone at `s` (m along the unstretched arm).
-/// Throws ViewRefusal if `s` is beyond the arm's ends.
+/// Throws ViewRefusal if `s` is not on the arm.
 [[nodiscard]] Node point_answer(const Backbone& backbone, double s);
 /// Returns the answer to the request `backbone`.
 [[nodiscard]] Node backbone_answer(const Backbone& backbone);

@@ -5,15 +5,16 @@
 
 namespace flexura {
 
-/// Lanes of work outside a session's thread. Jobs of one lane run one after another.
+/// Queues for work outside a session's thread. Jobs in one lane run one after another.
 enum class Lane : std::uint8_t { pictures, measures, checks, tasks };
 inline constexpr std::size_t lane_count = 4;
 
-/// Runs work away from a session's thread.
+/// Runs jobs outside a session's thread.
 class Background {
  public:
-  using After = std::function<void()>;  ///< Called on the session's thread; may be empty.
-  using Job = std::function<After()>;   ///< An exception of the job is rethrown by its After.
+  /// Function that is called on the session's thread after a job; may be empty.
+  using After = std::function<void()>;
+  using Job = std::function<After()>;  ///< Work of a job. If it throws an exception, the After rethrows it.
 
   virtual ~Background() = default;
   Background() = default;

@@ -28,7 +28,8 @@ Experiment experiment_from(const Recording& recording, double time) {
     checked.folder = experiment.folder;
     return checked;
   } catch (const InputError& error) {
-    throw ViewRefusal(fmt::format("no rig can start at {:.4g} s: {}", start, error.problems().front().what));
+    throw ViewRefusal(
+        fmt::format("a rig cannot start in the state at {:.4g} s: {}", start, error.problems().front().what));
   }
 }
 

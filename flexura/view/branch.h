@@ -6,12 +6,13 @@
 
 namespace flexura {
 
-/// Returns the commanded arm state and the readings of the camera axes in the recording at `time`, s.
+/// Returns the commanded arm state and the measured positions of the camera axes in the recording at `time`,
+/// s.
 [[nodiscard]] RigInstant instant_at(const Recording& recording, double time);
 
-/// Returns the recording's experiment with another start: the arm's command and the readings of the camera
-/// axes are those of the recording at `time` (s). Differences between truth and model at the start stay
-/// unchanged. Everything starts at rest. Throws ViewRefusal if the arm cannot start in that state.
+/// Returns the recording's experiment with a start in the state of the recording at `time` (s): the arm's
+/// command and the measured positions of the camera axes. Differences between truth and model at the start
+/// remain. Everything starts at rest. Throws ViewRefusal if the arm cannot start in that state.
 [[nodiscard]] Experiment experiment_from(const Recording& recording, double time);
 
 }  // namespace flexura

@@ -50,10 +50,10 @@ std::string caption(const CalibrationDecisionMessage& decision) {
     return fmt::format("{} of {}: {:.4g} {} off; {}", *decision.step, decision.camera.value_or(""),
                        decision.offset.value_or(0), decision.unit.value_or(""), decision.next);
   const std::string known = decision.found
-                                ? fmt::format("the angle between the axes is known within {:.4f} deg",
+                                ? fmt::format("standard deviation of the angle between the axes: {:.4f} deg",
                                               decision.angle_sigma * 180 / std::numbers::pi)
-                                : decision.reason.value_or("no rig is found");
-  return fmt::format("after {} looks {}{}{}", decision.looks, known,
+                                : decision.reason.value_or("no rig was found");
+  return fmt::format("after {} views: {}{}{}", decision.looks, known,
                      decision.next.empty() ? "" : "; next: ", decision.next);
 }
 
@@ -61,7 +61,7 @@ std::string caption(const CalibrationDecisionMessage& decision) {
 
 Extras calibration_extras(const ShownCalibration& calibration) {
   Extras extras;
-  extras.title = "Calibration", extras.text = "looks for the first time";
+  extras.title = "Calibration", extras.text = "first view";
   if (calibration.decision)
     extras.time = calibration.decision->time, extras.text = caption(*calibration.decision);
   for (const CalibrationPicture& picture : calibration.pictures) {

@@ -13,7 +13,7 @@ namespace flexura {
 struct CalibrationPicture {
   CalibrationObservationMessage observation;
   std::optional<std::int64_t> number =
-      {};  ///< Number of the picture for clients; missing if clients do not get the picture.
+      {};  ///< Number of the picture in messages to clients; missing if clients do not get the picture.
 };
 
 /// State of a calibration at one time: its last decision, and the last picture of each camera.
@@ -23,7 +23,7 @@ struct ShownCalibration {
 };
 
 /// Returns the extras of a calibration: the measurements as layers on each picture, and a text about the
-/// resulting estimate.
+/// estimate.
 [[nodiscard]] Extras calibration_extras(const ShownCalibration& calibration);
 
 }  // namespace flexura

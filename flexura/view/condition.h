@@ -5,15 +5,15 @@
 
 namespace flexura {
 
-/// The condition of a rig, or of a recorded run at one time.
+/// Condition of a rig, or of a recorded run at one time.
 enum class Condition : std::uint8_t {
   idle,     ///< Nothing moves, and no tasks run.
   moving,   ///< A client moves the arm.
   running,  ///< Tasks run.
-  done,     ///< Tasks are done, and nothing was moved since.
+  done,     ///< Tasks are done, and no client has moved anything since then.
   halted,   ///< A client or the program has stopped the motion.
   failed,   ///< Tasks have failed.
-  unsafe,   ///< The arm violates a limit or has a forbidden contact, now or during these tasks.
+  unsafe,   ///< The arm violates a limit or has a forbidden contact, now or during the run's tasks.
 };
 
 /// Returns the name of a condition in messages, such as "unsafe".

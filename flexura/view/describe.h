@@ -25,7 +25,7 @@ struct Quantity {
   std::string name;
   std::string unit;
   std::optional<std::string> group =
-      {};  ///< Group in which the quantity is shown; missing: derived from its name.
+      {};  ///< Group in which the quantity is shown; default: derived from the quantity's name.
 };
 
 const Table<Mark>& fields_of(const Mark*);
@@ -34,15 +34,15 @@ const Table<Quantity>& fields_of(const Quantity*);
 /// Returns [x, y, z, qw, qx, qy, qz].
 [[nodiscard]] Node flat_pose_node(const Pose& X_WP);
 
-/// Returns the part SCENE of the description: the true scene.
+/// Returns SCENE of the protocol (docs/viewer-protocol.md): the description of the true scene.
 [[nodiscard]] Node scene_node(const ViewedRig& rig);
 
-/// Returns the part CONTROLS of the description: the controls with their ranges according to the model, and
-/// the tasks. The range of a tendon follows from its sections' limits; a section without a limit counts with
-/// a whole turn.
+/// Returns CONTROLS of the protocol (docs/viewer-protocol.md): the controls with their ranges according to
+/// the model, and the tasks. The range of a tendon is computed from the bend limits of its sections. A
+/// section without a limit counts as limited to a full turn.
 [[nodiscard]] Node controls_node(const ViewedRig& rig);
-/// Returns CONTROLS for a live rig. Actuators and switches for clients are included, if there are any;
-/// coupled tendons are then omitted.
+/// Returns CONTROLS for a live rig. It includes the actuators and switches for clients, if there are any.
+/// Coupled tendons are omitted if there are actuators.
 [[nodiscard]] Node live_controls_node(const ViewedRig& rig);
 
 }  // namespace flexura

@@ -33,7 +33,7 @@ std::map<std::string, std::string> query_of(const RequestTarget& target,
   std::map<std::string, std::string> query;
   for (const auto& [key, value] : target.query) {
     if (std::ranges::count(known, key) == 0 || !query.emplace(key, value).second)
-      throw ViewRefusal(fmt::format("the address does not take \"{}\"", key));
+      throw ViewRefusal(fmt::format("the address has the unknown parameter \"{}\"", key));
   }
   return query;
 }
@@ -66,7 +66,7 @@ SeriesAsk series_ask(const RequestTarget& target) {
   std::ranges::sort(sorted);
   if (ask.names.empty() || ask.names.size() > most_names ||
       std::ranges::adjacent_find(sorted) != sorted.end())
-    throw ViewRefusal(fmt::format("names: expected one to {} different ones", most_names));
+    throw ViewRefusal(fmt::format("names: expected 1 to {} different names", most_names));
   ask.points = values.contains("points") ? number_of<std::int64_t>(values["points"]) : 1000;
   if (ask.points < 2 || ask.points > most_points)
     throw ViewRefusal(fmt::format("points: expected 2 to {}", most_points));
@@ -83,7 +83,7 @@ Document read_document(std::string_view text) {
   if (path.starts_with(image)) return image_ask(path.substr(image.size()), *target);
   if (path == "/series") return series_ask(*target);
   if (path == "/report" && target->query.empty()) return ReportAsk{};
-  throw ViewRefusal("there is nothing at this address");
+  throw ViewRefusal("nothing exists at this address");
 }
 
 }  // namespace flexura

@@ -214,12 +214,12 @@ std::filesystem::path save_new_experiment(const std::filesystem::path& folder, c
                                           const std::string& text) {
   if (!is_plain_name(name))
     throw ViewRefusal(
-        fmt::format("name = {}: expected a name of letters, digits, spaces, \".\", \"-\" and \"_\" that ends "
-                    "with .toml",
+        fmt::format("name = {}: expected a name made of letters, digits, spaces, \".\", \"-\" and \"_\" that "
+                    "ends with .toml",
                     text_node(name).brief()));
   const std::filesystem::path file = folder / name;
   if (!is_missing(file))
-    throw ViewRefusal(fmt::format("{} exists already: expected a new name", file.string()));
+    throw ViewRefusal(fmt::format("{} already exists: expected a new name", file.string()));
   try {
     write_new_file(file, text);
   } catch (const std::runtime_error& error) {

@@ -14,37 +14,37 @@ namespace flexura {
 
 /// State of a rig or a recording at one time.
 struct RigInstant {
-  ArmState arm;  ///< State to which the arm is commanded.
-  /// Axis positions of each camera's head and stage: the readings, or the last commands in a live session
-  /// without a shown run.
+  ArmState arm;  ///< Commanded state of the arm.
+  /// Axis positions of each camera's head and stage: the measured ones, or in a live session without a shown
+  /// run the last commanded ones.
   std::vector<CameraReading> cameras;
 };
 
-/// Returns the rig's experiment with another start: the arm's initial command and the readings of the camera
-/// axes are those of `instant`. Differences between truth and model at the start stay unchanged.
+/// Returns the rig's experiment with `instant` as its start: the arm's initial command and the camera axes'
+/// measured positions. Differences between truth and model at the start remain.
 [[nodiscard]] Experiment started_at(const ViewedRig& rig, const RigInstant& instant);
 
-/// Returns the problems of a text as an experiment file, with their lines and columns; empty if the text is
-/// valid. The text must not name other files: neither `include` nor files of keyframes.
+/// Returns the errors in the text of an experiment file, with their lines and columns; empty if the text is
+/// valid. The text must not refer to other files by `include` or as keyframes.
 [[nodiscard]] std::vector<Problem> experiment_problems(const std::string& text);
 
-/// Returns the text of an experiment for editing: `file_text` if it alone gives the experiment, otherwise a
-/// text with every value.
+/// Returns the text of an experiment for editing: `file_text` if this text alone defines the experiment,
+/// otherwise a text with every value.
 [[nodiscard]] std::string editable_text(const std::string& file_text, const Experiment& experiment);
 
-/// Returns `text`, which gives the rig's experiment, with a task `move` to a state at its end. If that is not
-/// possible in `text`, returns a text with every value.
+/// Appends a task `move` to a given state to `text`, the text of the rig's experiment, and returns the
+/// result. If that is not possible in `text`, returns a text with every value.
 [[nodiscard]] std::string with_move(const std::string& text, const ViewedRig& rig, const ArmState& to);
-/// Returns `text`, which gives the rig's experiment, with another start of one camera's axes. If that is not
-/// possible in `text`, returns a text with every value.
+/// Changes the initial axis positions of one camera in `text`, the text of the rig's experiment, and returns
+/// the result. If that is not possible in `text`, returns a text with every value.
 [[nodiscard]] std::string with_camera_start(const std::string& text, const ViewedRig& rig, std::size_t camera,
                                             const CameraReading& reading);
 
 /// Returns the name of a file that does not exist in `folder`: "STEM-2.toml", "STEM-3.toml", ...
 [[nodiscard]] std::string free_name(const std::filesystem::path& folder, const std::string& stem);
 
-/// Writes a new file into `folder` and returns its path. Throws ViewRefusal if `name` is not a plain name
-/// that ends with .toml, if the file exists or cannot be written.
+/// Writes a new file into `folder` and returns its path. Throws ViewRefusal if `name` is not a plain file
+/// name that ends with .toml, if the file exists, or if it cannot be written.
 std::filesystem::path save_new_experiment(const std::filesystem::path& folder, const std::string& name,
                                           const std::string& text);
 

@@ -18,7 +18,7 @@ namespace flexura {
 struct GhostArm {
   std::string id, label;
   std::string color;               ///< "#rrggbb"
-  std::vector<ArmSample> samples;  ///< Samples of its backbone, as returned by arm_samples().
+  std::vector<ArmSample> samples;  ///< Samples of the arm's backbone, as returned by arm_samples().
 };
 
 /// Layers on a camera's picture.
@@ -27,7 +27,7 @@ struct PictureLayers {
   /// Number of the picture in image messages; missing: any picture.
   std::optional<std::int64_t> number;
   std::string reason;  ///< Why nothing was found in the picture, or "".
-  Node::Array layers;  ///< Layers, each a LAYER of the protocol.
+  Node::Array layers;  ///< Layers, as LAYER of the protocol (docs/viewer-protocol.md).
 };
 
 /// Values at equally spaced points along the arm, from base to tip.
@@ -37,42 +37,43 @@ struct AlongCurve {
   std::vector<double> values;
 };
 
-/// Name and colour of an item that is shown in several places.
+/// Name and colour of an item, for example a true arm, that several drawings show.
 struct ExtraName {
   const char *id, *label;
   const char* color;  ///< "#rrggbb"
 };
-/// The simulated truth.
+/// The true arm of the simulation.
 inline constexpr ExtraName true_arm{"truth", "True", "#51cf66"};
 
 struct Extras {
   double time = 0;          ///< Time, s.
-  std::string title, text;  ///< Title of these drawings, and their status; one line each.
+  std::string title, text;  ///< Title of the drawings, and their status; one line each.
   std::vector<GhostArm> ghosts;
   std::vector<PictureLayers> overlays;
   std::string along_label, along_unit;  ///< Label and unit of all curves.
   double length = 0;                    ///< Length of the arm along which the curves are drawn, m.
   std::vector<AlongCurve> along;
-  std::vector<std::pair<std::string, double>> values;  ///< Quantities with their names in series.
+  /// Names and values of quantities; the names are those in series.
+  std::vector<std::pair<std::string, double>> values;
 };
 
-/// Returns a line on a picture, rounded to a hundredth of a pixel. `id` and `color` match those of the ghost
-/// that shows the same item.
+/// Returns a line on a picture, rounded to 0.01 px. `id` and `color` are those of the ghost that shows the
+/// same item in 3D.
 [[nodiscard]] Node line_layer(const std::string& id, const std::string& color,
                               const std::vector<Eigen::Vector2d>& points, bool is_dashed = false);
 
-/// Common properties of layers that have their own visibility button.
+/// Properties of a layer with a visibility button.
 struct LayerMark {
   std::string id, label;
   std::string color;  ///< "#rrggbb"
-  std::string of;     ///< Ghost layer whose visibility button also hides this layer; "": none.
+  std::string of;     ///< Ghost whose visibility button also hides this layer, or "".
 };
-/// Returns crosses, or separate lines, on a picture, rounded to a hundredth of a pixel.
+/// Returns crosses or separate lines on a picture, rounded to 0.01 px.
 [[nodiscard]] Node points_layer(const LayerMark& mark, const std::vector<Eigen::Vector2d>& points);
 [[nodiscard]] Node lines_layer(const LayerMark& mark, const std::vector<std::vector<Eigen::Vector2d>>& lines,
                                bool is_dashed = false);
 
-/// Stream number of extras messages to a client.
+/// Number of the stream with extras messages.
 inline constexpr std::uint32_t extras_stream = 0xffffffff;
 /// Returns the binary message with the extras. Empty extras remove the previous drawings.
 [[nodiscard]] std::string extras_message(const Extras& extras);

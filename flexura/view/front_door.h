@@ -20,16 +20,18 @@
 
 namespace flexura {
 
-/// Connects a server and a viewer. Takes events from the server's thread without blocking, and passes them to
-/// the viewer on its own thread. This thread advances the viewer 60 times a second while a client is
-/// connected. Errors in this thread are reported to the affected clients and do not stop it.
+/// Connects a server and a viewer. Receives events on the server's thread without blocking, and passes them
+/// to the viewer on a separate thread. While a client is connected, the viewer's thread advances the viewer
+/// 60 times a second. Errors in the viewer's thread are reported to the affected clients and do not stop the
+/// thread.
 class FrontDoor : public Host {
  public:
   struct Config {
-    std::function<double()> clock;  ///< Time in s, never decreasing; callable from any thread.
-    double interval = 1.0 / 60;     ///< Interval between advances of the viewer, s.
+    /// Returns the time, s, which never decreases. It is called from any thread.
+    std::function<double()> clock;
+    double interval = 1.0 / 60;  ///< Interval between advances of the viewer, s.
     std::size_t waiting_of_a_client =
-        256;  ///< Largest number of unanswered requests per client; further requests are refused.
+        256;  ///< Largest number of unanswered requests per client. Further requests are refused.
     std::size_t waiting_documents = 64;
   };
 
@@ -39,7 +41,7 @@ class FrontDoor : public Host {
   /// Starts the viewer. Must be called once, before or after the first client connects. `messenger` must
   /// exist until stop(). Rethrows exceptions of the viewer's construction.
   void start(ViewStart start, Messenger& messenger);
-  /// Stops the viewer, after which the messenger is not used. Waits for active jobs and cancels a run.
+  /// Stops the viewer: cancels a run and waits for active jobs. Afterwards the messenger is no longer used.
   void stop();
 
   void opened(ClientId client) override;

@@ -11,8 +11,8 @@
 
 namespace flexura {
 
-/// Decides when which client gets images of which camera. Each stream has its own rate. The next image is due
-/// only after the client has acknowledged the previous image.
+/// Decides when to send a camera's images to a client. Each pair of client and camera is a stream with its
+/// own rate. The next image is due only after the client has acknowledged the previous image.
 class ImageStreams {
  public:
   struct Key {

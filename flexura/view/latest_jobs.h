@@ -13,25 +13,26 @@
 
 namespace flexura {
 
-/// Questions of clients, of which only the newest matters. For each client and kind, at most one question is
-/// being answered and at most one waits. All calls must be from one thread; answers are computed on another
-/// thread.
+/// Requests of clients of which only the newest is relevant. For each client and kind of request, at most one
+/// request is being answered and at most one waits. All calls must be from one thread. Answers are computed
+/// on another thread.
 class LatestJobs {
  public:
-  /// The client and the kind of its question.
+  /// A client and a kind of request.
   struct Key {
     ClientId client = 0;
     std::size_t kind = 0;
     auto operator<=>(const Key&) const = default;
   };
-  /// Computes the answer, on the lane's thread. An exception becomes the reason for the refusal.
+  /// Computes the answer on the lane's thread. If it throws an exception, the request is refused with the
+  /// exception's text.
   using Job = std::function<Node()>;
 
   LatestJobs(Background& background, Lane lane) : background_(background), lane_(lane) {}
 
-  /// Adds a question. A waiting question of the same key is refused.
+  /// Adds a request. If a request with an equal key is waiting, that request is refused.
   void ask(const Key& key, Job job, Reply reply);
-  /// Drops the waiting questions of a client.
+  /// Removes the waiting requests of a client.
   void close(ClientId client);
 
  private:

@@ -24,7 +24,7 @@ constexpr double rod_interval = 0.0049;
 
 // The rig's own cameras are never asked for frames: pictures are rendered from value_shot elsewhere.
 Picture no_picture(const Shot& /*shot*/) {
-  throw std::logic_error("the live rig's pictures are taken elsewhere");
+  throw std::logic_error("the live rig does not take pictures by itself");
 }
 
 ShapeConfig shape_of(const ArmState& state) {
@@ -157,7 +157,7 @@ std::shared_ptr<const Backbone> LiveRig::rod_at_rest(const ArmState& state) {
 ArmState nearest_arcs(const ViewedRig& rig, const TendonPull& pull) {
   if (rig.drive) return fit_state(rig.model.driven(), *rig.drive, {pull.displacements}).state;
   const ArmSetup setup(rig.experiment.true_rig());
-  if (!setup.rod) throw std::logic_error("an arm without tendons that are pulled one by one");
+  if (!setup.rod) throw std::logic_error("the arm has no tendons that can be pulled individually");
   return nearest_arcs(setup.rod->rod, setup.arm, pull.displacements);
 }
 

@@ -19,8 +19,8 @@
 
 namespace flexura {
 
-/// A simulated rig that follows an external clock. Commands are sent through its ports, and the display shows
-/// the simulated truth.
+/// A simulated rig that follows an external clock. Commands are sent through its ports. The viewer shows its
+/// true state.
 class LiveRig {
  public:
   /// Starts in the initial state of the experiment. `now`: time of the external clock, s.
@@ -29,10 +29,10 @@ class LiveRig {
   /// Restores the initial state of the experiment.
   void restart(double now);
 
-  /// Replaces the simulated rig by another one of the same experiment in its present state, at the time
-  /// `now`, s.
+  /// Replaces the simulated rig by `rig`, a simulated rig of the same experiment, in the present state of
+  /// `rig`. `now`: time of the external clock, s.
   void take_over(std::unique_ptr<SimulatedRig> rig, double now);
-  /// Restores the initial state of the experiment, except that the arm's drives read `state`.
+  /// Restores the initial state of the experiment, but with the arm's drives at the state `state`.
   void restart(double now, const ArmState& state);
 
   [[nodiscard]] RigPorts ports() { return simulated_->ports(); }
@@ -41,8 +41,8 @@ class LiveRig {
   void go_to(double now) { simulated_->clock().wait_until(rig_time(now)); }
   /// Moves the rig to the time `now` (s) without simulation, while no client is connected.
   void rest_until(double now) { start_ += std::max(0.0, now - this->now()); }
-  /// Must be called before the rig advances to the time `next` (s). A rod is simulated only for the last 0.1
-  /// s before `next`; earlier time is skipped, because the rod's steps are too slow to catch up.
+  /// Must be called before the rig advances to the time `next` (s). If the arm is a rod, skips all but the
+  /// last 0.1 s before `next`, because the simulation of a rod may be too slow to catch up.
   void skip_to(double next);
   /// Returns the recent speed of the rig's time relative to real time, if the simulation is slower than real
   /// time. Otherwise returns std::nullopt.
@@ -50,13 +50,14 @@ class LiveRig {
 
   /// Returns the shape of the arm according to the model.
   [[nodiscard]] ArmState nominal();
-  /// Returns the state that the drives truly impose at `time` (s). Future times are possible for motions that
-  /// are already commanded.
+  /// Returns the state that the true drives impose at `time` (s). The time may be in the future, for motions
+  /// that are already commanded.
   [[nodiscard]] ArmState truth(double time) { return simulated_->arm().truth(rig_time(time)); }
-  /// Returns the true backbone at `time` (s). Future times are possible as for truth().
+  /// Returns the true backbone at `time` (s). The time may be in the future, for motions that are already
+  /// commanded.
   [[nodiscard]] Backbone backbone(double time) { return simulated_->arm().backbone(rig_time(time)); }
-  /// Returns the backbone at rest for these bends; the current backbone if the arm has these bends now.
-  /// Throws std::runtime_error if a rod has no equilibrium for these bends.
+  /// Returns the backbone at rest for these bends. If the arm has these bends now, returns the current
+  /// backbone. Throws std::runtime_error if a rod has no equilibrium for these bends.
   [[nodiscard]] Backbone at_rest(const ArmState& state);
   /// Returns the backbone of a rod at rest, for pictures; null if the arm is not a rod or has no equilibrium.
   [[nodiscard]] std::shared_ptr<const Backbone> rod_at_rest(const ArmState& state);
@@ -66,14 +67,14 @@ class LiveRig {
   CommandOutcome pull(const TendonPull& pull, double duration) {
     return simulated_->arm().pull(pull.displacements, duration);
   }
-  /// Switches the arm's weight and loads on or off until a restart. Throws std::runtime_error, without any
-  /// change, if the arm would have no equilibrium.
+  /// Switches the arm's weight and loads on or off until a restart. If the arm would have no equilibrium,
+  /// changes nothing and throws std::runtime_error.
   void weigh(bool on);
-  /// Applies a push until a restart; std::nullopt ends it. Throws std::runtime_error, without any change, if
-  /// the arm would have no equilibrium. Throws std::invalid_argument for an invalid push.
+  /// Applies a push until a restart; std::nullopt ends the push. If the arm would have no equilibrium,
+  /// changes nothing and throws std::runtime_error. Throws std::invalid_argument for an invalid push.
   void push(const std::optional<PlantPush>& push);
   [[nodiscard]] bool is_pushed() { return simulated_->arm().plant().pushed(rig_time(now())).has_value(); }
-  /// Returns whether the arm is pushed or swings, so that its motion is not only the commanded one.
+  /// Returns whether the arm is pushed or oscillates. Then its motion differs from the commanded motion.
   [[nodiscard]] bool is_yielding();
   /// Returns a one-line warning about the present state of the arm, or "".
   [[nodiscard]] std::string warning() { return simulated_->arm().plant().warning(rig_time(now())); }
@@ -84,7 +85,7 @@ class LiveRig {
 
   /// Returns the number of a camera's newest frame whose exposure has ended.
   [[nodiscard]] std::int64_t newest_frame(std::size_t camera);
-  /// Returns the shot from which frame number `frame` of a camera is rendered.
+  /// Returns the data from which frame number `frame` of a camera is rendered.
   [[nodiscard]] ValueShot shot(std::size_t camera, std::int64_t frame);
 
  private:
@@ -102,12 +103,12 @@ class LiveRig {
 /// cannot be pulled individually.
 [[nodiscard]] ArmState nearest_arcs(const ViewedRig& rig, const TendonPull& pull);
 
-/// Converts contacts of a log or of a run into contacts of state messages.
+/// Converts contacts of a log or a run to contacts in state messages.
 [[nodiscard]] std::vector<ContactSample> contact_samples(const ViewedRig& rig,
                                                          const std::vector<ContactMessage>& contacts);
 
-/// Returns the state message of the arm commanded to `state` at `time` s, with the cameras at `stances`. If
-/// `truth` is not null, it gives the shape of the arm.
+/// Returns the state message of an arm with the command `state` at `time`, s, with the cameras at `stances`.
+/// If `truth` is not null, it is the shape of the arm.
 [[nodiscard]] StateMessage still_state(const ViewedRig& rig, double time, const ArmState& state,
                                        const std::vector<CameraStance>& stances,
                                        const TrueArm* truth = nullptr);

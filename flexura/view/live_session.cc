@@ -86,7 +86,7 @@ struct LiveSession::Taker : PictureSession::Taker {
   }
   void operator()(const HaltRequest&) const {
     if (session.is_watched_run())
-      throw ViewRefusal("cannot halt: the run belongs to the terminal that started it, which alone stops it");
+      throw ViewRefusal("cannot halt: only the terminal that started the run can stop it");
     session.halt();
     done();
   }
@@ -115,19 +115,21 @@ struct LiveSession::Taker : PictureSession::Taker {
     session.start_run(run, reply);
   }
   void operator()(const SpeedRequest& request) const {
-    if (session.run_ == nullptr) throw ViewRefusal("no run is going on");
+    if (session.run_ == nullptr) throw ViewRefusal("no run is active");
     session.pace_->set_speed(request.speed);
     done();
   }
   void operator()(const CancelRequest&) const {
-    if (session.is_watched_run()) throw ViewRefusal("the run belongs to the terminal that started it");
-    if (session.run_ == nullptr) throw ViewRefusal("no run is going on");
+    if (session.is_watched_run()) throw ViewRefusal("only the terminal that started the run can cancel it");
+    if (session.run_ == nullptr) throw ViewRefusal("no run is active");
     session.run_->cancel();
     done();
   }
   void operator()(const OpenRequest&) const { throw ViewRefusal("there is no recording yet"); }
   void operator()(const LiveRequest&) const { done(); }
-  void operator()(const BranchRequest&) const { throw ViewRefusal("this is no recording"); }
+  void operator()(const BranchRequest&) const {
+    throw ViewRefusal("expected a recording, but this is a live rig");
+  }
   void operator()(const ExperimentRequest&) const { throw ViewRefusal("has no text here"); }
   void operator()(const CheckRequest&) const { throw ViewRefusal("has no text here"); }
   void operator()(const SaveRequest&) const { throw ViewRefusal("has no text here"); }
@@ -196,12 +198,12 @@ void LiveSession::take(const Document& document, std::function<void(HttpAnswer)>
   if (image == nullptr) throw ViewRefusal("a live rig has no series and no report: expected a recording");
   if (image->time) throw ViewRefusal("a live rig has only current pictures: expected no time");
   if (!room().file(newest_shot(place_of(image->camera)), std::move(answer)))
-    throw ViewRefusal("too many pictures are asked for at once");
+    throw ViewRefusal("too many pictures are requested at once");
 }
 
 void LiveSession::require_free() const {
-  if (is_watched_run()) throw ViewRefusal("this rig can only be looked at");
-  if (run_ != nullptr) throw ViewRefusal("a run of tasks is going on");
+  if (is_watched_run()) throw ViewRefusal("this rig can only be viewed, not moved");
+  if (run_ != nullptr) throw ViewRefusal("a run of tasks is active");
 }
 
 void LiveSession::start_run(const RunRequest& request, const Reply& reply) {
@@ -270,7 +272,7 @@ void LiveSession::stay_where_it_ended() {
     aim_at_readings();
     is_touching_ = !touched(rig_.backbone(rig_.now()), viewed()->forbidden).empty();
   } catch (const std::exception& error) {
-    notice("error", "safety", std::string("everything is put back: ") + error.what());
+    notice("error", "safety", std::string("everything is reset to the start: ") + error.what());
     reset();
   }
 }

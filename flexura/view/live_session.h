@@ -23,21 +23,23 @@
 
 namespace flexura {
 
-/// Session with a simulated rig that clients can move. During a run the session shows the run's newest state.
+/// Session with a simulated rig that clients can move. During a run, the session shows the newest state of
+/// the run.
 class LiveSession : public PictureSession {
  public:
   struct Config {
-    double start = 0;               ///< Initial time of the clock of advance(), s.
-    std::filesystem::path results;  ///< Folder for the results of runs; -2, ... is appended if it exists.
-    /// A run started outside this session. Clients can change its speed, but cannot cancel or halt it, or
-    /// move anything during it.
+    double start = 0;  ///< Initial time of the clock of advance(), s.
+    /// Folder for the results of runs. If it exists, -2, -3, ... is appended.
+    std::filesystem::path results;
+    /// A run that was started outside this session. Clients can change its speed, but can neither cancel nor
+    /// halt it, and cannot move anything during the run.
     std::shared_ptr<RunLink> run = {};
     double speed = 0;  ///< Initial speed of `run` relative to real time; 0: as fast as possible.
   };
 
   LiveSession(const ViewedRigPtr& rig, Messenger& messenger, Background& background, Config config);
 
-  /// Cancels a run that this session has started. Does not wait for its end.
+  /// Cancels a run that this session has started. Does not wait for the run's end.
   void cancel();
 
   [[nodiscard]] Hello hello() const override;
@@ -48,11 +50,11 @@ class LiveSession : public PictureSession {
   [[nodiscard]] RigInstant instant(ClientId client) override;
   void advance(double now) override;
 
-  /// Returns the results folder of the last finished run that has results.
+  /// Returns the results folder of the last finished run with results.
   [[nodiscard]] const std::optional<std::filesystem::path>& results() const { return results_; }
   /// Returns whether tasks are running, started in this session or outside.
   [[nodiscard]] bool is_running() const { return run_ != nullptr; }
-  /// Returns whether a run waits for advance() to go on, whether clients are connected or not.
+  /// Returns whether a run can only continue if advance() is called, even without connected clients.
   [[nodiscard]] bool is_pacing() const { return is_watched_run() && run_ != nullptr && pace_->speed() > 0; }
   /// Returns whether a run started outside this session has ended.
   [[nodiscard]] bool is_over() const { return is_watched_run() && run_ == nullptr; }

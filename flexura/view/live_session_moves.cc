@@ -42,31 +42,32 @@ LiveSession::Judged LiveSession::judge(const ViewedRig& rig, const ArmState& fro
 
 void LiveSession::look_at(Move move) {
   is_looking_ = true;
-  background().run(Lane::checks,
-                   [this, rig = viewed(), from = rig_.nominal(), move = std::move(move),
-                    generation = generation_, alive = this->alive()]() -> Background::After {
-                     Judged judged;
-                     try {
-                       judged = judge(*rig, from, move);
-                     } catch (const std::exception& error) {
-                       judged.danger = error.what();
-                     }
-                     return [this, move, judged, generation, alive] {
-                       if (alive.expired()) return;
-                       is_looking_ = false;
-                       if (generation == generation_) {
-                         finish(move, judged);
-                       } else {
-                         move.reply({nothing(), "cancelled before its start: the arm was stopped or reset"});
-                       }
-                       if (waiting_ && !is_looking_) look_at(*std::exchange(waiting_, std::nullopt));
-                     };
-                   });
+  background().run(
+      Lane::checks,
+      [this, rig = viewed(), from = rig_.nominal(), move = std::move(move), generation = generation_,
+       alive = this->alive()]() -> Background::After {
+        Judged judged;
+        try {
+          judged = judge(*rig, from, move);
+        } catch (const std::exception& error) {
+          judged.danger = error.what();
+        }
+        return [this, move, judged, generation, alive] {
+          if (alive.expired()) return;
+          is_looking_ = false;
+          if (generation == generation_) {
+            finish(move, judged);
+          } else {
+            move.reply({nothing(), "cancelled before the motion's start: the arm was stopped or reset"});
+          }
+          if (waiting_ && !is_looking_) look_at(*std::exchange(waiting_, std::nullopt));
+        };
+      });
 }
 
 void LiveSession::finish(const Move& move, const Judged& judged) {
   if (!judged.danger.empty()) {
-    warn("does not go there: " + judged.danger);
+    warn("the arm does not move there: " + judged.danger);
     move.reply(judged.found ? ViewAnswer{tip_answer(*judged.found, judged.danger), ""}
                             : ViewAnswer{nothing(), "unsafe: " + judged.danger});
     return;
@@ -102,7 +103,7 @@ void LiveSession::halt() {
   ++generation_;
   if (waiting_)
     std::exchange(waiting_, std::nullopt)
-        ->reply({nothing(), "cancelled before its start: the arm was stopped or reset"});
+        ->reply({nothing(), "cancelled before the motion's start: the arm was stopped or reset"});
   const RigPorts ports = rig_.ports();
   // The simulated rig's links are never interrupted: a fault here is a program error.
   (void)ports.arm->halt().value();
@@ -129,7 +130,7 @@ void LiveSession::reset() {
   warning_.clear();
   if (waiting_)
     std::exchange(waiting_, std::nullopt)
-        ->reply({nothing(), "cancelled before its start: the arm was stopped or reset"});
+        ->reply({nothing(), "cancelled before the motion's start: the arm was stopped or reset"});
   ++leaps_;
   rig_.restart(clock_ - config_.start);
   aim_at_readings();
@@ -139,7 +140,8 @@ void LiveSession::reset() {
 
 // Switches weight and loads on or off. They change at once, since they have no inertia.
 void LiveSession::weigh(bool on) {
-  if (!viewed()->has_weight) throw ViewRefusal("weight: this arm has no weight or loads to switch off");
+  if (!viewed()->has_weight)
+    throw ViewRefusal("weight: this arm has neither weight nor loads that can be switched off");
   try {
     rig_.weigh(on);
   } catch (const std::runtime_error& error) {
@@ -162,13 +164,13 @@ void LiveSession::push(ClientId client, const PushRequest& request) {
     push.force = vector(*request.force);
     if (push.force.norm() > scale->most)
       throw ViewRefusal(
-          fmt::format("force: {:.4g} N: expected {:.4g} N at most", push.force.norm(), scale->most));
+          fmt::format("force: {:.4g} N: expected at most {:.4g} N", push.force.norm(), scale->most));
   } else {
     constexpr double stiffest = 100;  // Multiple of the default stiffness.
     push.to = vector(*request.to);
     push.stiffness = request.stiffness.value_or(scale->stiffness);
     if (push.stiffness > stiffest * scale->stiffness)
-      throw ViewRefusal(fmt::format("stiffness = {:.6g}: expected {:.4g} N/m at most", push.stiffness,
+      throw ViewRefusal(fmt::format("stiffness = {:.6g}: expected at most {:.4g} N/m", push.stiffness,
                                     stiffest * scale->stiffness));
   }
   try {
@@ -186,7 +188,7 @@ void LiveSession::release() {
   try {
     rig_.push(std::nullopt);
   } catch (const std::runtime_error& error) {
-    notice("error", "safety", std::string("everything is put back: ") + error.what());
+    notice("error", "safety", std::string("everything is reset to the start: ") + error.what());
     reset();
   }
 }
@@ -241,7 +243,7 @@ void LiveSession::move_on(double next) {
     rig_.go_to(next);
     watch_yielding();
   } catch (const std::runtime_error& error) {
-    notice("error", "safety", std::string("everything is put back: ") + error.what());
+    notice("error", "safety", std::string("everything is reset to the start: ") + error.what());
     reset();
   }
 }

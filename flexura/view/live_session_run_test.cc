@@ -40,7 +40,7 @@ TEST_F(LiveSessionTest, RunsTheTasksIntoANewFolder) {
   ASSERT_EQ(answer.error, "");
   const std::filesystem::path results = *answer.result.find("folder")->as<std::string>();
   EXPECT_TRUE(pass(0.1).is_running);
-  EXPECT_THAT(ask(bends({{0, 0}, {0, 0}})).error, HasSubstr("a run of tasks is going on"));
+  EXPECT_THAT(ask(bends({{0, 0}, {0, 0}})).error, HasSubstr("a run of tasks is active"));
   background_.work();
   EXPECT_FALSE(session_.results());
   EXPECT_FALSE(pass(0.1).is_running);
@@ -183,7 +183,7 @@ TEST_F(UnsafeSessionTest, SaysThatItIsUnsafeAndWas) {
 }
 
 TEST_F(RunningSessionTest, PlaysOnFasterWhenThatIsAsked) {
-  EXPECT_THAT(ask(SpeedRequest{4}).error, HasSubstr("no run is going on"));
+  EXPECT_THAT(ask(SpeedRequest{4}).error, HasSubstr("no run is active"));
   start(0.001);
   pass_run(0.2);
   EXPECT_TRUE(session_.is_running());
@@ -214,7 +214,7 @@ TEST_F(SwungArmTest, StaysAsTheRigOfItsTasksStands) {
 }
 
 TEST_F(LiveSessionTest, CancelsARun) {
-  EXPECT_THAT(ask(CancelRequest{}).error, HasSubstr("no run is going on"));
+  EXPECT_THAT(ask(CancelRequest{}).error, HasSubstr("no run is active"));
   background_.is_prompt = false;
   ask(RunRequest{.task = {}, .speed = 0});
   EXPECT_EQ(ask(CancelRequest{}).error, "");

@@ -52,7 +52,7 @@ TEST_F(LiveSessionTest, MovesTheArmAsAskedWithinItsLimits) {
 TEST_F(LiveSessionTest, RefusesAWayIntoAnObstacle) {
   const ViewAnswer answer = ask(bends({{2, 0}, {0, 0}}));
   EXPECT_THAT(answer.error, HasSubstr("unsafe: section 2: contact with ball"));
-  EXPECT_THAT(last_event(), HasSubstr("does not go there: section 2: contact with ball"));
+  EXPECT_THAT(last_event(), HasSubstr("the arm does not move there: section 2: contact with ball"));
   EXPECT_EQ(pass(0.5).arm.bends[0].norm(), 0);
 }
 
@@ -105,7 +105,7 @@ TEST_F(LiveSessionTest, HaltsEverythingAndWhatIsStillBeingJudged) {
   session_.take(me, bends({{1, 0}, {0, 0}}), [&](const ViewAnswer& answer) { late = answer.error; });
   EXPECT_EQ(ask(HaltRequest{}).error, "");
   background_.work();
-  EXPECT_EQ(late, "cancelled before its start: the arm was stopped or reset");
+  EXPECT_EQ(late, "cancelled before the motion's start: the arm was stopped or reset");
   const StateMessage stopped = pass(0.5);
   EXPECT_FALSE(stopped.is_moving);
   EXPECT_NEAR(stopped.arm.bends[0].x(), -0.25, 0.02);

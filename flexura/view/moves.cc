@@ -171,7 +171,8 @@ std::string beyond_limits(const Arm& arm, const ArmState& state) {
     const Section& section = arm.sections[i];
     const double bend = state.bends[i].norm();
     if (bend > section.max_bend + rounding)
-      return fmt::format("section {} is bent by {:.4g} rad: {:.4g} at most", i + 1, bend, section.max_bend);
+      return fmt::format("section {} is bent by {:.4g} rad: expected at most {:.4g} rad", i + 1, bend,
+                         section.max_bend);
     const auto [least, most] = section.stretch_limits;
     if (state.stretches[i] < least - rounding || state.stretches[i] > most + rounding)
       return fmt::format("section {} is stretched by {:.4g}: expected {:.4g} to {:.4g}", i + 1,

@@ -16,7 +16,7 @@
 namespace flexura {
 
 /// Returns the shape that a client requests, clamped to the arm's limits. Throws ViewRefusal with the reason
-/// if the request does not fit this arm.
+/// if the request does not fit the arm.
 [[nodiscard]] ArmState requested_shape(const Arm& arm, const std::optional<Drive>& drive,
                                        const ArmRequest& request);
 [[nodiscard]] ArmState requested_shape(const Arm& arm, const ShapeConfig& shape);
@@ -33,20 +33,20 @@ struct TendonPull {
 /// Throws ViewRefusal if the camera has no stage, or if the stage cannot move along a requested axis.
 void require_travel(const Camera& camera, const StageRequest& request);
 
-/// Returns the shape nearest to `state` within the sections' limits.
+/// Returns the shape within the sections' limits that is nearest to `state`.
 [[nodiscard]] ArmState within_limits(const Arm& arm, ArmState state);
 
-/// Returns a command that reaches the tip request, or comes nearest. The search starts at `from` and is fast
-/// enough to follow a dragging hand.
+/// Returns a command that reaches the requested tip pose, or comes nearest to it. The search starts at `from`
+/// and is fast enough to follow a user who drags the tip.
 [[nodiscard]] InverseResult shape_for_tip(const ArmModel& arm, const ArmState& from,
                                           const TipRequest& request);
 
-/// Returns in one line why the arm must not move straight from one command to another; "" if the path is
-/// free. Violations that already exist at the start and do not worsen are ignored.
+/// Returns in one line why the arm must not move on a straight path from one command to another; "" if it
+/// may. Ignores violations that already exist at the start and do not worsen.
 [[nodiscard]] std::string danger_on_path(const ArmModel& arm, const std::vector<Obstacle>& obstacles,
                                          const ArmState& from, const ArmState& to);
 
-/// Returns in one line which section is bent or stretched beyond its limits, or "".
+/// Returns in one line which section violates its bend or stretch limit, or "".
 [[nodiscard]] std::string beyond_limits(const Arm& arm, const ArmState& state);
 
 /// Returns in one line what an arm with this backbone touches, or "".

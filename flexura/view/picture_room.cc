@@ -125,7 +125,7 @@ void PictureRoom::deliver(const Sent& sent) {
 }
 
 void PictureRoom::pixel(const ImageStreams::Key& key, const ValueShot& newest, int u, int v, Reply reply) {
-  if (waiting_ >= most_waiting) throw ViewRefusal("too many pixels are asked for at once");
+  if (waiting_ >= most_waiting) throw ViewRefusal("too many pixels are requested at once");
   ++waiting_;
   const auto found = last_.find(key);
   const Shown shown = found != last_.end() ? found->second : Shown{newest, nullptr};

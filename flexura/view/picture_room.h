@@ -19,28 +19,29 @@
 
 namespace flexura {
 
-/// Stream number of states in Messenger::post. Images of camera i use the stream 1 + i.
+/// Number of the stream with state messages (Messenger::post). Images of camera i use the stream 1 + i.
 inline constexpr std::uint32_t state_stream = 0;
 [[nodiscard]] inline std::uint32_t image_stream(std::size_t camera) {
   return 1 + static_cast<std::uint32_t>(camera);
 }
 
 /// Renders a session's pictures outside the session's thread. A camera's next picture is rendered only after
-/// its previous picture is done. A picture that is certain to equal the previous one is not rendered again.
+/// its previous picture is complete. If a picture is certain to equal the previous one, it is not rendered
+/// again.
 class PictureRoom {
  public:
   PictureRoom(ViewedRigPtr rig, Messenger& messenger, Background& background, ImageStreams& streams);
 
   /// Returns whether a picture of this camera is being rendered for streams.
   [[nodiscard]] bool is_busy(std::size_t camera) const { return busy_.contains(camera); }
-  /// Renders a picture of one camera and sends it to the streams `to`.
+  /// Renders a picture of one camera and sends the picture to the streams `to`.
   void show(const ValueShot& shot, const std::vector<ImageStreams::Key>& to, double now);
-  /// Answers what a pixel shows in the last picture sent to the client; in `newest` if no picture was sent
-  /// yet. Throws ViewRefusal if too many requests wait.
+  /// Answers what a pixel shows in the last picture sent to the client. If no picture was sent yet, answers
+  /// for the picture `newest`. Throws ViewRefusal if too many requests are waiting.
   void pixel(const ImageStreams::Key& key, const ValueShot& newest, int u, int v, Reply reply);
-  /// Answers with the picture in PNG format. Returns false if too many requests wait.
+  /// Answers with the picture in PNG format. Returns false if too many requests are waiting.
   [[nodiscard]] bool file(const ValueShot& shot, std::function<void(HttpAnswer)> answer);
-  /// A picture and its shot.
+  /// A picture, and the shot from which it was rendered.
   struct Shown {
     ValueShot shot;
     std::shared_ptr<const Picture> picture;

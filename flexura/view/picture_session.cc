@@ -31,16 +31,16 @@ std::size_t PictureSession::place_of(const std::string& camera) const {
   std::vector<std::string> names;
   for (const Camera& known : viewed_->cameras) names.push_back(Node{known.config().name, {}}.brief());
   const std::string expected =
-      names.empty() ? "this rig has none" : fmt::format("expected one of {}", fmt::join(names, ", "));
+      names.empty() ? "this rig has no cameras" : fmt::format("expected one of {}", fmt::join(names, ", "));
   throw ViewRefusal(
-      fmt::format("camera = {}: there is no camera of that name; {}", Node{camera, {}}.brief(), expected));
+      fmt::format("camera = {}: there is no camera with this name; {}", Node{camera, {}}.brief(), expected));
 }
 
 PictureSession::Look PictureSession::look_at_sent(const ImageStreams::Key& key) {
   const auto sent = room_.last_sent(key);
   if (!sent)
     throw ViewRefusal(
-        fmt::format("no picture of the camera {} was sent yet: expected a request for images before",
+        fmt::format("no picture of the camera {} was sent yet: expected an earlier request for images",
                     Node{viewed_->cameras[key.camera].config().name, {}}.brief()));
   return [sent = *sent, rig = viewed_] {
     const Shot& shot = sent.shot.shot;
@@ -77,7 +77,7 @@ void PictureSession::Taker::operator()(const MeasureRequest& measure) const {
 
 void PictureSession::Taker::operator()(const ShapeRequest& /*shape*/) const {
   const std::size_t cameras = pictures.viewed_->cameras.size();
-  if (cameras < 2) throw ViewRefusal("a shape needs the pictures of two cameras: this rig has fewer");
+  if (cameras < 2) throw ViewRefusal("a shape needs pictures of two cameras: this rig has fewer cameras");
   std::vector<Look> looks;
   looks.reserve(cameras);
   for (std::size_t camera = 0; camera < cameras; ++camera) looks.push_back(pictures.look({client, camera}));

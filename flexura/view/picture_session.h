@@ -25,8 +25,8 @@ class PictureSession : public Session {
  protected:
   PictureSession(const ViewedRigPtr& rig, Messenger& messenger, Background& background);
 
-  /// Handles the requests that are common to both kinds of session. Their own handlers derive from this
-  /// struct.
+  /// Handles the requests that are common to both kinds of session. The handlers of both kinds derive from
+  /// this struct.
   struct Taker {
     PictureSession& pictures;
     ClientId client;
@@ -40,12 +40,12 @@ class PictureSession : public Session {
     void operator()(const PingRequest& ping) const;
   };
 
-  /// Function that gets a picture, called on the lane of measures. Throws an exception if there is no
-  /// picture.
+  /// Function that returns a picture. It is called on the thread of Lane::measures. It throws an exception if
+  /// there is no picture.
   using Look = std::function<SeenPicture()>;
-  /// Returns a Look at the picture that a client sees. Throws ViewRefusal if the client sees no picture.
+  /// Returns a function for the picture that a client sees. Throws ViewRefusal if the client sees no picture.
   [[nodiscard]] virtual Look look(const ImageStreams::Key& key) = 0;
-  /// Returns a Look at the last picture that room() sent to the client.
+  /// Returns a function for the last picture that room() sent to the client.
   [[nodiscard]] Look look_at_sent(const ImageStreams::Key& key);
 
   [[nodiscard]] const ViewedRigPtr& viewed() const { return viewed_; }

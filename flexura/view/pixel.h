@@ -26,7 +26,7 @@ class PixelProbe {
  public:
   explicit PixelProbe(ViewedRigPtr rig);
 
-  /// Returns what the centre of a pixel shows at mid-exposure of the frame.
+  /// Returns what is visible at the centre of a pixel, at mid-exposure of the frame.
   [[nodiscard]] SeenPixel look(const Shot& shot, int u, int v);
 
  private:
@@ -37,8 +37,8 @@ class PixelProbe {
   Renderer renderer_;
 };
 
-/// Returns the answer to the request `pixel`: the pixel's values, with `bits` bits, and what the pixel shows.
-/// Throws std::out_of_range for a pixel outside the picture.
+/// Returns the answer to the request `pixel`: the values of the pixel, with `bits` bits, and what the pixel
+/// shows. Throws std::out_of_range for a pixel outside the picture.
 [[nodiscard]] Node pixel_node(const Picture& picture, std::int64_t bits, int u, int v, std::int64_t number,
                               const std::optional<SeenPixel>& seen);
 

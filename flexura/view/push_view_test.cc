@@ -72,7 +72,7 @@ TEST_F(StaticPushView, GoesToTheEquilibriumAndReturnsWhenItIsReleased) {
 TEST_F(StaticPushView, RefusesWhatIsNoPushOfThisArm) {
   const PushScale scale = rig_->push.value();
   EXPECT_THAT(ask(by_force(1.2, 0.1, 0, 0)).error, HasSubstr("s = 1.2: expected 0 to 1 m"));
-  EXPECT_THAT(ask(by_force(0.5, 2 * scale.most, 0, 0)).error, HasSubstr(" N at most"));
+  EXPECT_THAT(ask(by_force(0.5, 2 * scale.most, 0, 0)).error, HasSubstr(" N: expected at most "));
   PushRequest hard = towards(0.5, {1, 1, 1});
   hard.stiffness = 1000 * scale.stiffness;
   EXPECT_THAT(ask(hard).error, HasSubstr("stiffness = "));

@@ -55,7 +55,7 @@ double number_of(const Node& node, std::string_view key, double otherwise) {
 Recording::Recording(const std::filesystem::path& folder)
     : folder_(folder), rig_(rig_of(folder)), log_(open_log(folder)) {
   index();
-  if (states_.empty()) throw input_error(folder.string(), "its log holds no state of the arm");
+  if (states_.empty()) throw input_error(folder.string(), "its log has no state of the arm");
   // Checks all states now, so that no damaged one is found during viewing.
   for (std::size_t place = 0; place < states_.size(); ++place) (void)state(place);
   read_marks();
@@ -185,7 +185,7 @@ ArmState Recording::state(std::size_t place) const {
   if (state.bends.size() != sections || state.stretches.size() != sections ||
       !std::ranges::all_of(state.bends, is_shape) || !std::ranges::all_of(state.stretches, is_stretch)) {
     throw input_error(folder_.string(),
-                      fmt::format("the log's state at {} s does not fit its arm", message.time));
+                      fmt::format("the log's state at {} s does not fit the log's arm", message.time));
   }
   return state;
 }
@@ -209,7 +209,7 @@ std::optional<std::size_t> Recording::image_at(std::size_t camera, double time) 
 
 Recording::LoggedImage Recording::image(std::size_t camera, std::size_t place) const {
   auto message = message_of<ImageMessage>(*images_.at(camera).at(place).message);
-  if (message.format != "png") throw input_error(folder_.string(), "an image of the log is no PNG");
+  if (message.format != "png") throw input_error(folder_.string(), "an image in the log is not a PNG file");
   return {static_cast<double>(message.timestamp.sec) + 1e-9 * static_cast<double>(message.timestamp.nsec),
           std::move(message.data.data)};
 }

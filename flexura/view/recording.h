@@ -19,22 +19,22 @@
 
 namespace flexura {
 
-/// Results of a run, prepared for viewing: the content of its log by time. Immutable, so that threads can
+/// Results of a run, prepared for viewing: the content of the log by time. Immutable, so that threads can
 /// share it. For a run that was killed, it has the log up to the last complete chunk.
 class Recording {
  public:
-  /// Opens a results folder of `flexura run`. Throws InputError if the folder is no such folder, or if its
-  /// log is damaged or has no state.
+  /// Opens a results folder of `flexura run`. Throws InputError if the folder is not a results folder, or if
+  /// its log is damaged or has no state.
   explicit Recording(const std::filesystem::path& folder);
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] const ViewedRigPtr& rig() const { return rig_; }
-  /// Returns whether the log has no end: the run was killed.
+  /// Returns whether the log is incomplete because the run was killed.
   [[nodiscard]] bool is_truncated() const { return log_.truncated(); }
   [[nodiscard]] const std::vector<Mark>& marks() const { return marks_; }
   [[nodiscard]] double duration() const {
     return seconds(states_.back().time);
-  }  ///< Time of the last state, s.
+  }  ///< Returns the time of the last state, s.
   /// Returns the median time between consecutive states, s; 0 if there is only one state.
   [[nodiscard]] double interval() const { return interval_of(states_); }
 
@@ -47,11 +47,11 @@ class Recording {
   /// Returns the arm's shape in state number `place`. Throws InputError if the logged shape does not fit the
   /// arm.
   [[nodiscard]] ArmState state(std::size_t place) const;
-  /// Returns the run's condition at a time, s: `unsafe` while a limit is violated, at the end the condition
-  /// in the results, and otherwise `running`.
+  /// Returns the run's condition at a time, s. It is `unsafe` while a limit is violated, and otherwise
+  /// `running`. At the end, it is the condition in the results.
   [[nodiscard]] Conditioned condition(double time) const;
 
-  /// Returns the number of a camera's images in the log.
+  /// Returns how many images of a camera the log has.
   [[nodiscard]] std::size_t images(std::size_t camera) const { return images_.at(camera).size(); }
   /// Returns the index of a camera's last image at or before `time` (s); std::nullopt before the first image.
   [[nodiscard]] std::optional<std::size_t> image_at(std::size_t camera, double time) const;
@@ -68,9 +68,9 @@ class Recording {
   [[nodiscard]] std::optional<ServoStep> servo_step(double time) const;
   /// Returns the servo's last command at a time, s, with its observations in the pictures shown at that time.
   [[nodiscard]] std::optional<ShownServo> servo(double time) const;
-  /// Returns the index of the state in which a servo or calibration took the picture whose measurements are
-  /// drawn at a time, s. Returns std::nullopt for a camera with logged images, and at times without an active
-  /// servo or calibration.
+  /// Returns the index of the state at which the measured picture was taken whose measurements are drawn at a
+  /// time, s. The picture is that of a servo or calibration. Returns std::nullopt for a camera with logged
+  /// images, and at times without an active servo or calibration.
   [[nodiscard]] std::optional<std::size_t> measured_state(std::size_t camera, double time) const;
   /// Returns whether the log has a calibration.
   [[nodiscard]] bool has_calibration() const { return !decisions_.empty(); }
@@ -83,12 +83,12 @@ class Recording {
   /// Returns the samples of the true arm from base to tip at a time, s; std::nullopt if the log has no true
   /// arm near that time. Throws InputError if the logged arm is invalid.
   [[nodiscard]] std::optional<std::vector<ArmSample>> truth(double time) const;
-  /// Forces of an elastic-rod arm, as logged at or just before a time.
+  /// Forces on an arm that is an elastic rod, as logged at or just before a time.
   struct LoggedForces {
-    std::optional<EnergyMessage> energy;   ///< Missing: unknown at that time.
+    std::optional<EnergyMessage> energy;   ///< Energies; missing: unknown at that time.
     std::vector<double> tensions;          ///< Tension of each tendon, N; empty: unknown at that time.
     std::vector<double> lost_steps;        ///< Microsteps lost by each motor; empty: unknown at that time.
-    std::vector<ContactMessage> contacts;  ///< Empty: no contacts.
+    std::vector<ContactMessage> contacts;  ///< Contacts of the arm; empty: no contacts.
   };
   /// Returns the forces at a time, s. Values of invalid messages count as unknown.
   [[nodiscard]] LoggedForces forces(double time) const;
@@ -98,7 +98,7 @@ class Recording {
   [[nodiscard]] bool has_contacts() const { return !contacts_.empty(); }
   /// Returns whether the log has tensions.
   [[nodiscard]] bool has_tensions() const { return !tensions_.empty(); }
-  /// Returns the camera axis positions logged at a time, s. Without a message, or with a damaged one, returns
+  /// Returns the camera axis positions logged at a time, s. If there is no message or a damaged one, returns
   /// the positions at the start of the experiment.
   [[nodiscard]] CameraStance stance(std::size_t camera, double time) const;
 

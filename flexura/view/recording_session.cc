@@ -94,11 +94,11 @@ struct RecordingSession::Taker : PictureSession::Taker {
     done(backbone_answer(
         session.viewed()->model.backbone(requested_shape(session.viewed()->model.driven(), backbone))));
   }
-  void operator()(const CancelRequest&) const { throw ViewRefusal("no run is going on"); }
-  void operator()(const OpenRequest&) const { throw ViewRefusal("this is the recording"); }
+  void operator()(const CancelRequest&) const { throw ViewRefusal("no run is active"); }
+  void operator()(const OpenRequest&) const { throw ViewRefusal("the recording is already open"); }
   template <class Other>
   void operator()(const Other&) const {
-    throw ViewRefusal("this is a recording: nothing moves in it");
+    throw ViewRefusal("this is a recording, in which nothing can be moved");
   }
 };
 
@@ -325,7 +325,7 @@ void RecordingSession::give_image(const ImageAsk& ask, std::function<void(HttpAn
   const std::int64_t place = require_image(camera, ask.time.value_or(recording_->duration()));
   if (!is_filmed(camera)) {
     if (!room().file(shot(camera, place), std::move(answer)))
-      throw ViewRefusal("too many pictures are asked for at once");
+      throw ViewRefusal("too many pictures are requested at once");
     return;
   }
   background().run(

@@ -381,7 +381,7 @@ TEST_F(RecordingSessionTest, OpensNoLogWithAStateThatIsNoShape) {
     open();
     ADD_FAILURE() << "opened";
   } catch (const InputError& refusal) {
-    EXPECT_THAT(refusal.what(), HasSubstr("state at 0 s does not fit its arm"));
+    EXPECT_THAT(refusal.what(), HasSubstr("state at 0 s does not fit the log's arm"));
   }
 }
 
@@ -425,7 +425,7 @@ TEST_F(RecordingSessionTest, RefusesWhatIsNoRecording) {
   std::ofstream(folder_.path() / experiment_file_name) << viewed_text;
   EXPECT_THAT(error(), HasSubstr("holds no log.mcap"));
   std::ofstream(folder_.path() / log_file_name) << "";
-  EXPECT_THAT(error(), HasSubstr("holds no state"));
+  EXPECT_THAT(error(), HasSubstr("has no state"));
   std::ofstream(folder_.path() / log_file_name) << "this is no log at all, is it";
   EXPECT_NE(error(), "no error");
 }

@@ -31,7 +31,7 @@ namespace {
 constexpr double farthest = 1e9;
 constexpr std::size_t most_sections = 10000;
 const NumberRange any_place = between(-farthest, farthest);
-constexpr const char* speed_meaning = "of real time; 0: as fast as possible";
+constexpr const char* speed_meaning = "relative to real time; 0: as fast as possible";
 const NumberRange speed_range = between(0, 1000);
 
 template <class S>
@@ -124,7 +124,7 @@ const Table<ArmRequest>& fields_of(const ArmRequest*) {
           .field("duration", &ArmRequest::duration, {.meaning = "s", .range = between(0, 1e6)})
           .check([](const ArmRequest& arm, Reader& reader) {
             if (arm.tendons && (arm.bends || arm.cord_angles || arm.archings || arm.stretches))
-              reader.problem_at("tendons", "are given together with another shape: expected tendons alone");
+              reader.problem_at("tendons", "are given together with another shape: expected only tendons");
             if (!arm.tendons && !arm.bends && !arm.cord_angles && !arm.archings && !arm.stretches)
               reader.problem("has no shape: expected bends, cord_angles, archings, tendons or stretches");
           });
@@ -135,8 +135,9 @@ const Table<TipRequest>& fields_of(const TipRequest*) {
   static const auto table =
       Table<TipRequest>("tip", "Moves the tip to a position.")
           .field("position", &TipRequest::position,
-                 {.meaning = "of the tip", .range = any_place, .required = true})
-          .field("direction", &TipRequest::direction, {.meaning = "of its z axis", .range = any_place})
+                 {.meaning = "position of the tip", .range = any_place, .required = true})
+          .field("direction", &TipRequest::direction,
+                 {.meaning = "direction of the tip's z axis", .range = any_place})
           .check([](const TipRequest& tip, Reader& reader) {
             if (tip.direction && *tip.direction == std::array<double, 3>{})
               reader.problem_at("direction", "is zero: expected a direction");
@@ -178,15 +179,17 @@ const Table<PushRequest>& fields_of(const PushRequest*) {
   static const auto table =
       Table<PushRequest>("push", "Pushes the simulated arm at a point.")
           .field("s", &PushRequest::s, {.meaning = "m", .range = between(0, farthest), .required = true})
-          .field("to", &PushRequest::to, {.meaning = "where a spring draws it, m", .range = any_place})
+          .field("to", &PushRequest::to,
+                 {.meaning = "point to which a spring pulls the arm, m", .range = any_place})
           .field("force", &PushRequest::force, {.meaning = "N", .range = any_place})
           .field("stiffness", &PushRequest::stiffness,
-                 {.meaning = "of the spring, N/m", .range = above_up_to(0, farthest)})
+                 {.meaning = "stiffness of the spring, N/m", .range = above_up_to(0, farthest)})
           .check([](const PushRequest& push, Reader& reader) {
             if (push.to.has_value() == push.force.has_value())
-              reader.problem("expected one of to (a spring draws the point there) and force");
+              reader.problem("expected one of to (end of a spring) and force");
             if (push.force && push.stiffness)
-              reader.problem_at("stiffness", "applies only to a spring (to): expected none with force");
+              reader.problem_at("stiffness",
+                                "applies only to a spring (to): expected no stiffness with force");
           });
   return table;
 }
@@ -195,7 +198,7 @@ const Table<RunRequest>& fields_of(const RunRequest*) {
   static const auto table =
       Table<RunRequest>("run", "Runs the experiment's tasks.")
           .field("task", &RunRequest::task,
-                 {.meaning = "the place of one, from 0", .range = between(0, farthest)})
+                 {.meaning = "index of the only task to run, from 0", .range = between(0, farthest)})
           .field("speed", &RunRequest::speed, {.meaning = speed_meaning, .range = speed_range});
   return table;
 }
@@ -224,9 +227,10 @@ const Table<BranchRequest>& fields_of(const BranchRequest*) {
 
 const Table<ExperimentRequest>& fields_of(const ExperimentRequest*) {
   static const auto table =
-      Table<ExperimentRequest>("experiment", "Asks for the text of the experiment.")
-          .field("add", &ExperimentRequest::add, {.meaning = "what is added of what is shown"})
-          .field("camera", &ExperimentRequest::camera, {.meaning = "whose view is added"})
+      Table<ExperimentRequest>("experiment", "Requests the text of the experiment.")
+          .field("add", &ExperimentRequest::add,
+                 {.meaning = "part of the shown state that is added to the text"})
+          .field("camera", &ExperimentRequest::camera, {.meaning = "camera whose view is added"})
           .check([](const ExperimentRequest& experiment, Reader& reader) {
             const bool is_view = experiment.add == "view";
             if (experiment.add && !is_view && experiment.add != "pose")
@@ -254,14 +258,14 @@ const Table<SaveRequest>& fields_of(const SaveRequest*) {
 
 const Table<AtRequest>& fields_of(const AtRequest*) {
   static const auto table =
-      Table<AtRequest>("at", "Goes to a time of a recording.")
+      Table<AtRequest>("at", "Shows a recording at a time.")
           .field("time", &AtRequest::time, {.meaning = "s", .range = any_place, .required = true});
   return table;
 }
 
 const Table<ImagesRequest>& fields_of(const ImagesRequest*) {
   static const auto table =
-      Table<ImagesRequest>("images", "Images of a camera.")
+      Table<ImagesRequest>("images", "Requests images of a camera.")
           .field("camera", &ImagesRequest::camera, {.required = true})
           .field("rate", &ImagesRequest::rate, {.range = between(0, 1000), .required = true})
           .field("quality", &ImagesRequest::quality, {.range = between(1, 100)})
@@ -280,7 +284,7 @@ const Table<AckRequest>& fields_of(const AckRequest*) {
 
 const Table<PixelRequest>& fields_of(const PixelRequest*) {
   static const auto table =
-      Table<PixelRequest>("pixel", "Asks what a pixel shows.")
+      Table<PixelRequest>("pixel", "Requests what a pixel shows.")
           .field("camera", &PixelRequest::camera, {.required = true})
           .field("u", &PixelRequest::u, {.range = between(0, 65535), .required = true})
           .field("v", &PixelRequest::v, {.range = between(0, 65535), .required = true})
@@ -293,7 +297,7 @@ const Table<MeasureRequest>& fields_of(const MeasureRequest*) {
       Table<MeasureRequest>("measure", "Measures the arm in a picture.")
           .field("camera", &MeasureRequest::camera, {.required = true})
           .field("layers", &MeasureRequest::layers,
-                 {.meaning = "what is to be drawn", .count = {0, layer_names().size()}})
+                 {.meaning = "names of the layers to draw", .count = {0, layer_names().size()}})
           .check([](const MeasureRequest& measure, Reader& reader) {
             check_camera(measure.camera, reader);
             for (std::size_t i = 0; measure.layers && i < measure.layers->size(); ++i) {
@@ -311,13 +315,13 @@ const Table<ShapeRequest>& fields_of(const ShapeRequest*) { return bare<ShapeReq
 
 const Table<PointRequest>& fields_of(const PointRequest*) {
   static const auto table =
-      Table<PointRequest>("point", "Asks for a point of the backbone.")
+      Table<PointRequest>("point", "Requests a point of the backbone.")
           .field("s", &PointRequest::s, {.meaning = "m", .range = any_place, .required = true});
   return table;
 }
 
 const Table<BackboneRequest>& fields_of(const BackboneRequest*) {
-  static const auto table = with_shape<BackboneRequest>("backbone", "Asks for the backbone of a shape.");
+  static const auto table = with_shape<BackboneRequest>("backbone", "Requests the backbone of a shape.");
   return table;
 }
 

@@ -15,7 +15,7 @@
 namespace flexura {
 
 /// Moves the arm to a shape given by bends or by tendon displacements. If the rig has actuators, each tendon
-/// is pulled to its displacement, whatever the resulting shape.
+/// is pulled to its displacement, regardless of the resulting shape.
 struct ArmRequest : ShapeConfig {
   std::optional<std::vector<double>> tendons;  ///< Tendon displacements, m.
   double duration = 0;                         ///< Duration of the move, s.
@@ -37,12 +37,13 @@ struct ResetRequest {};
 struct WeightRequest {
   bool on = true;
 };
-/// Pushes the simulated arm at a point of its backbone, by a spring to a fixed point or by a force.
+/// Pushes the simulated arm at a point of its backbone: by a spring to a fixed point, or by a force.
 struct PushRequest {
   double s = 0;                                ///< Arc length along the unstretched arm, m.
-  std::optional<std::array<double, 3>> to;     ///< The other end of the spring in W, m; excludes `force`.
-  std::optional<std::array<double, 3>> force;  ///< Constant force in W, N; excludes `to`.
-  std::optional<double> stiffness;  ///< Stiffness of the spring, N/m; default: the stiffness in the controls.
+  std::optional<std::array<double, 3>> to;     ///< Fixed end of the spring in W, m; not allowed with `force`.
+  std::optional<std::array<double, 3>> force;  ///< Constant force in W, N; not allowed with `to`.
+  /// Stiffness of the spring, N/m; default: the stiffness given in the controls.
+  std::optional<double> stiffness;
 };
 struct ReleaseRequest {};
 struct RunRequest {
@@ -62,12 +63,14 @@ struct LiveRequest {};
 struct BranchRequest {
   double time = 0;  ///< Time in the recording, s.
 };
-/// Asks for the text of the experiment.
+/// Requests the text of the experiment.
 struct ExperimentRequest {
-  std::optional<std::string> add;     ///< "pose": a task to the shown pose; "view": the view of `camera`.
+  /// Addition to the text. "pose": a task that moves the arm to the shown pose. "view": the shown view of
+  /// `camera`.
+  std::optional<std::string> add;
   std::optional<std::string> camera;  ///< Name of the camera for "view".
 };
-/// The text of a file; may have any number of lines.
+/// The text of a file, with any number of lines.
 struct FileText {
   std::string content;
 };
@@ -141,15 +144,16 @@ using Ask = std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, Halt
                          SaveRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest, MeasureRequest,
                          ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
 
-/// The request of one message, or why it is invalid.
+/// The request in one message, or the reason why the message is invalid.
 struct Request {
-  std::optional<std::int64_t> id;  ///< Echoed in the reply; may be missing only for `ack`.
+  /// Identifier, which is repeated in the reply; may be missing only for `ack`.
+  std::optional<std::int64_t> id;
   Ask ask = PingRequest{};
   std::string error;  ///< Reason why the request is invalid, in one line; "" if `ask` is valid.
 };
 
-/// Parses a message. Never throws because of its content. The session checks whether the request fits the
-/// rig.
+/// Parses a message. Never throws because of the message's content. The session checks whether the request
+/// fits the rig.
 [[nodiscard]] Request read_request(std::string_view text);
 
 }  // namespace flexura

@@ -76,7 +76,7 @@ TEST(Request, ReadsEverythingThatAPageCanAsk) {
 
 TEST(Request, SaysThatNoMoreIsExpectedWhereNothingIs) {
   EXPECT_THAT(read_request(R"({"id":7,"do":"ping","x":1})").error,
-              HasSubstr("x: unknown key; no more is expected here"));
+              HasSubstr("x: unknown key; no keys are expected here"));
 }
 
 TEST(Request, NeedsNoIdForAnAcknowledgement) {
@@ -101,7 +101,7 @@ TEST(Request, SaysInOneLineWhatIsWrong) {
       {R"({"id":7,"do":"fly\nhigh"})", "expected one of arm, tip"},
       {R"({"id":7,"do":"ping","x":1})", "x"},
       {R"({"id":7,"do":"arm"})", "has no shape"},
-      {R"({"id":7,"do":"arm","tendons":[0],"bends":[[0,0]]})", "expected tendons alone"},
+      {R"({"id":7,"do":"arm","tendons":[0],"bends":[[0,0]]})", "expected only tendons"},
       {R"({"id":7,"do":"arm","bends":[[0,0,0]]})", "bends[0]"},
       {R"({"id":7,"do":"arm","bends":[[0,1e9]]})", "bends[0][1]"},
       {R"({"id":7,"do":"arm","bends":[[0,0]],"duration":-1})", "duration"},
@@ -116,7 +116,7 @@ TEST(Request, SaysInOneLineWhatIsWrong) {
       {R"({"id":7,"do":"measure","camera":"a","layers":"axis"})", "layers"},
       {R"({"id":7,"do":"shape","camera":"a"})", "camera: unknown key"},
       {R"({"id":7,"do":"push","force":[0,0,1]})", "s: missing"},
-      {R"({"id":7,"do":"push","s":0.1})", "expected one of to (a spring draws the point there) and force"},
+      {R"({"id":7,"do":"push","s":0.1})", "expected one of to (end of a spring) and force"},
       {R"({"id":7,"do":"push","s":0.1,"to":[0,0,0],"force":[0,0,1]})", "expected one of to"},
       {R"({"id":7,"do":"push","s":-0.1,"force":[0,0,1]})", "s = -0.1"},
       {R"({"id":7,"do":"push","s":NaN,"force":[0,0,1]})", "JSON"},

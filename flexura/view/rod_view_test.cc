@@ -215,7 +215,7 @@ TEST_F(RustyRod, IsPutBackWhereItFindsNoRest) {
   const int leaps = pass(0.1).leaps;
   EXPECT_EQ(ask(bends({{-2, 0}, {2, 0}}, 3)).error, "");
   const StateMessage state = pass(2.5);
-  EXPECT_THAT(last_event(), HasSubstr("everything is put back: at "));
+  EXPECT_THAT(last_event(), HasSubstr("everything is reset to the start: at "));
   EXPECT_EQ(state.leaps, leaps + 1);
   EXPECT_EQ(state.arm.bends[0].norm(), 0);
   EXPECT_NEAR(state.time, 2.6, 1e-6) << "time goes on";

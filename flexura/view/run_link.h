@@ -24,8 +24,8 @@
 
 namespace flexura {
 
-/// Connection between a run on its own thread and its viewers. The run reports its state here, and viewers
-/// query it. The run never waits for viewers, unless it is paced (pace_to). All methods can be called from
+/// Connection between a run on its own thread and its viewers. The run reports its state to this object, and
+/// viewers query it. The run never waits for viewers, except after pace_to(). All methods can be called from
 /// any thread.
 class RunLink : public Progress, public RunWatcher {
  public:
@@ -35,20 +35,23 @@ class RunLink : public Progress, public RunWatcher {
     std::string text;              ///< Reason, one line; may be "".
     std::filesystem::path folder;  ///< Folder with the results; "" if the run has no results.
   };
-  /// An event, as logged.
+  /// A logged event.
   struct Event {
     double time = 0;  ///< Time, s.
     std::string level, name, text;
   };
-  /// State of a camera and the arm at the last picture of the camera that was measured.
+  /// State of a camera and the arm at the camera's last measured picture.
   struct Measured {
     std::string camera;
-    std::int64_t frame = 0;                ///< Number of the frame.
-    double time = 0;                       ///< Middle of the exposure, s.
-    ArmState state;                        ///< Commanded state of the arm at this time.
-    std::optional<CameraReading> reading;  ///< Reading of the camera in the measurement; may be missing.
+    std::int64_t frame = 0;  ///< Number of the frame.
+    double time = 0;         ///< Middle of the exposure, s.
+    ArmState state;          ///< Commanded state of the arm at this time.
+    /// Axis positions of the camera that the measurement used; may be missing.
+    std::optional<CameraReading> reading;
     std::vector<CameraReading>
-        readings;  ///< Readings of all cameras at this time, if `reading` is missing; empty: as at the start.
+        /// Measured axis positions of all cameras at this time, if `reading` is missing; empty: the initial
+        /// positions.
+        readings;
     std::shared_ptr<const TrueArm> truth;  ///< True arm near this time; null: unknown.
   };
   /// The newest data of a run.
@@ -58,8 +61,9 @@ class RunLink : public Progress, public RunWatcher {
     std::optional<double> time;  ///< Time of `state`, s; missing before the first state.
     ArmState state;
     std::shared_ptr<const TrueArm> truth;  ///< Newest true arm since the last request_truth(), or null.
-    std::vector<CameraReading> cameras;    ///< Readings of the cameras at this time; empty: as at the start.
-    std::optional<ShownServo> servo;       ///< State of a servo while it controls the arm.
+    /// Measured axis positions of the cameras at this time; empty: the initial positions.
+    std::vector<CameraReading> cameras;
+    std::optional<ShownServo> servo;              ///< State of a servo while it controls the arm.
     std::optional<ShownCalibration> calibration;  ///< State of a calibration while it is active.
     std::vector<Measured>
         measured;  ///< Last measured picture of each camera, while a servo or calibration is active.
@@ -67,7 +71,7 @@ class RunLink : public Progress, public RunWatcher {
     std::optional<End> end;
   };
 
-  /// `also`: also receives the progress; may be null.
+  /// `also`: another receiver of the progress; may be null.
   explicit RunLink(Progress* also = nullptr) : also_(also) {}
 
   void update(double fraction, std::string_view what) override;
@@ -82,18 +86,18 @@ class RunLink : public Progress, public RunWatcher {
   void task_ended() override;
 
   void cancel();
-  /// From now on the run waits before each state that is later than `time` (s).
+  /// From now on, the run waits before each state that is later than `time` (s).
   void pace_to(double time);
   /// Stores the simulated rig of the run in its final state. Not called for a run without a simulated rig.
   void leave(std::unique_ptr<SimulatedRig> rig);
-  /// Returns the stored rig once; null if there is none, or before the run's end.
+  /// Returns and removes the stored rig; null without a stored rig and before the run's end.
   [[nodiscard]] std::unique_ptr<SimulatedRig> take_rig();
-  /// Requests the true arm in the next news, once for each call.
+  /// Requests the true arm for the next news. Each call requests it once.
   void request_truth() { is_truth_requested_ = true; }
   void finish(End end);
   [[nodiscard]] News news() const;
-  /// Returns and removes the oldest events, at most `most`. If there are very many events, only the last ones
-  /// are kept.
+  /// Returns and removes the oldest events, at most `most`. If there are very many events, older ones are
+  /// lost.
   [[nodiscard]] std::vector<Event> take_events(std::size_t most);
 
  private:
@@ -120,7 +124,8 @@ class RunLink : public Progress, public RunWatcher {
   std::deque<std::pair<double, std::shared_ptr<const TrueArm>>> truths_;
 };
 
-/// Runs an experiment, with results in an existing empty folder, and reports its end to `link`. Never throws.
+/// Runs an experiment, writes its results into an existing empty folder, and reports the run's end to `link`.
+/// Never throws.
 void run_linked(const Experiment& experiment, const std::filesystem::path& folder, RunLink& link);
 
 }  // namespace flexura

@@ -4,8 +4,8 @@
 
 namespace flexura {
 
-/// Limits the speed of a run of tasks, so that people can follow it. The run's time advances with a clock,
-/// `speed` times as fast. Delays of the run are not caught up later. Pauses of the clock do not count.
+/// Limits the speed of a run of tasks, so that people can follow it. The run's time advances `speed` times as
+/// fast as a clock. If the run is delayed, it does not catch up later. Pauses of the clock do not count.
 class RunPace {
  public:
   /// `speed`: run seconds per second of the clock; 0: as fast as possible. `step`: step of the run's clock,
@@ -16,7 +16,7 @@ class RunPace {
   /// Changes the speed from now on.
   void set_speed(double speed);
   /// Returns the time up to which the run may advance, s. `passed`: time of the clock since the last call, s.
-  /// `reached`: present time of the run, s. Infinite for speed 0.
+  /// `reached`: present time of the run, s. It is infinite for speed 0.
   [[nodiscard]] double next(double passed, double reached);
   /// Returns the recent speed of the run, in run seconds per second of the clock, if the run is slower than
   /// `speed`. Otherwise returns std::nullopt.

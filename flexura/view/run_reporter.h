@@ -27,7 +27,7 @@ class RunReporter {
   /// Sends the extras again in the next report, for a new client.
   void repeat() { are_extras_known_ = false; }
   /// Reports news to the clients. `clock`: present time, s. `now`: time of events in messages, s; if it is
-  /// missing, events have their own times.
+  /// missing, messages have the events' own times.
   void report(RunLink& run, const RunLink::News& news, double clock, std::optional<double> now,
               const std::set<ClientId>& clients);
 

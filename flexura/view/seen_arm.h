@@ -17,26 +17,26 @@
 // use only data that a real rig provides: pictures, and the models of arm and cameras.
 namespace flexura {
 
-/// A picture, and the camera's reading for it.
+/// A picture, and the camera's axis positions when it was taken.
 struct SeenPicture {
   std::size_t camera = 0;
   std::int64_t number = 0;                 ///< Number of the picture for the client.
-  int white = 255;                         ///< Largest value of the picture.
+  int white = 255;                         ///< Pixel value of the sensor's full scale.
   std::shared_ptr<const Picture> picture;  ///< The picture, never null.
-  CameraReading reading;                   ///< Reading of the camera at mid-exposure.
+  CameraReading reading;                   ///< Measured axis positions of the camera at mid-exposure.
 };
 
 /// Returns the names of all layers: "mask", "silhouette", "axis", "markers", "circle".
 [[nodiscard]] std::span<const std::string_view> layer_names();
 
-/// Returns the answer to the request `measure`: measurements of the arm in the picture, as layers with these
-/// names (docs/viewer-protocol.md). The perspective offset between the middle of the tube's image and the
-/// image of its backbone is corrected.
+/// Returns the answer to the request `measure`: measurements of the arm in the picture, as layers with the
+/// requested names (docs/viewer-protocol.md). It corrects the perspective offset between the middle of the
+/// tube's image and the image of the backbone.
 [[nodiscard]] Node measure_answer(const ViewedRig& rig, const SeenPicture& seen,
                                   const std::vector<std::string>& layers);
 
 /// Returns the answer to the request `shape`: the arm's shape estimated from pictures of two or more cameras,
-/// as poses of a ghost.
+/// as poses of a second arm in the 3D view.
 [[nodiscard]] Node shape_answer(const ViewedRig& rig, std::span<const SeenPicture> seen);
 
 }  // namespace flexura

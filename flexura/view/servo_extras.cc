@@ -124,7 +124,7 @@ PictureLayers layers_of(const ServoPicture& picture) {
 std::string caption(const ServoStep& step) {
   std::string line = step.error ? fmt::format("error {:.2f} % of the length, at the tip {:.2f} %",
                                               100 * step.error->rms, 100 * step.error->tip)
-                                : "the arm is not seen";
+                                : "the arm is not visible";
   if (!step.limited.empty()) line += "; limited by: " + step.limited;
   return line;
 }

@@ -18,7 +18,7 @@ namespace flexura {
 struct ServoPicture {
   ServoObservationMessage observation;
   std::optional<std::int64_t> number =
-      {};  ///< Number of the picture for clients; missing if clients do not get the picture.
+      {};  ///< Number of the picture in messages to clients; missing if clients do not get the picture.
 };
 
 /// State of a servo at one time: its last command, and the pictures used for it.
@@ -27,10 +27,10 @@ struct ShownServo {
   std::vector<ServoPicture> pictures;
 };
 
-/// Returns the extras of a servo. They have the target shape, the observed shape and the simulated truth as
-/// ghosts. They also have measured centerlines, images of the target shape, and distances along the arm. The
-/// truth is omitted if its arcs are not those of the rig's arm, as for a rod. Throws InputError if the shapes
-/// do not fit the rig's arm.
+/// Returns the extras of a servo. They include the target shape, the observed shape and the true shape as
+/// ghosts, measured centerlines, images of the target shape, and distances along the arm. The true shape is
+/// omitted if its arcs are not those of the rig's arm, for example if it is a rod. Throws InputError if the
+/// shapes do not fit the rig's arm.
 [[nodiscard]] Extras servo_extras(const ViewedRig& rig, const ShownServo& servo);
 
 /// Returns the names of a servo's errors. They are in percent of the arm's length.

@@ -13,20 +13,20 @@
 
 namespace flexura {
 
-/// Exception of sessions that refuse a request, with the reason in one line.
+/// Exception for a request that a session refuses. It has the reason in one line.
 class ViewRefusal : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The outcome of a request: a result, or the reason for a refusal if `error` is not "".
+/// Answer to a request: a result, or the reason for the refusal in `error`. `error` is "" for a result.
 struct ViewAnswer {
   Node result = {Node::Table{}, {}};
   std::string error;
 };
 using Reply = std::function<void(ViewAnswer)>;
 
-/// Content of the message `hello` about a session.
+/// Content of the message `hello` (docs/viewer-protocol.md) for a session.
 struct Hello {
   std::string mode;  ///< "live" or "recording".
   std::string title;
@@ -38,10 +38,11 @@ struct Hello {
   std::vector<Quantity> quantities;
   bool report = false;
   bool readonly = false;
-  std::optional<double> speed;  ///< Speed of a run that was started outside, relative to real time.
+  /// Speed of a run that was started outside the session, relative to real time.
+  std::optional<double> speed;
 };
 
-/// A request for a picture by its address.
+/// A request for a picture by its address (URL).
 struct ImageAsk {
   std::string camera;
   std::optional<double> time;  ///< Time in the recording, s.
@@ -64,13 +65,13 @@ class Session {
   [[nodiscard]] virtual Hello hello() const = 0;
   virtual void opened(ClientId client) = 0;
   virtual void closed(ClientId client) = 0;
-  /// Handles a client's request, and calls `reply` once on this thread, at once or later. Throws ViewRefusal
-  /// instead to refuse the request.
+  /// Handles a client's request. Calls `reply` exactly once on this thread, immediately or later. If it
+  /// refuses the request, it throws ViewRefusal instead.
   virtual void take(ClientId client, const Ask& ask, Reply reply) = 0;
-  /// Calls `answer` once with the document on any thread, at once or later. Throws ViewRefusal instead to
-  /// refuse the request.
+  /// Calls `answer` exactly once with the document, on any thread, immediately or later. If it refuses the
+  /// request, it throws ViewRefusal instead.
   virtual void take(const Document& document, std::function<void(HttpAnswer)> answer) = 0;
-  /// Returns the state that a client sees. Positions with a command are the commanded ones.
+  /// Returns the state that a client sees. Commanded positions are used where they exist.
   [[nodiscard]] virtual RigInstant instant(ClientId client) = 0;
   /// Advances to the time `now` (s), which never decreases, and sends due messages to the clients.
   virtual void advance(double now) = 0;

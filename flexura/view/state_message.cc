@@ -34,7 +34,7 @@ class Writer {
   }
   void count(std::size_t value) {
     if (value > std::numeric_limits<std::uint16_t>::max())
-      throw std::length_error("a state message has at most 65535 of each thing");
+      throw std::length_error("a state message can have at most 65535 items of each kind");
     put(static_cast<std::uint16_t>(value));
   }
   void reserve(std::size_t size) { text_.reserve(size); }

@@ -34,17 +34,17 @@ struct CameraSample {
   Eigen::Vector3d commanded_stage = Eigen::Vector3d::Zero();  ///< Commanded or reported stage position, m.
 };
 
-/// State of an actuator that clients can move individually: a tendon that is pulled in.
+/// State of an actuator that clients can move individually: a tendon.
 struct ActuatorSample {
   double value = 0;  ///< Commanded displacement, m.
   double force = 0;  ///< Tension, N; 0 for a slack tendon.
-  double lost = 0;   ///< Number of microsteps that its motor has lost.
+  double lost = 0;   ///< Number of microsteps that the tendon's motor has lost.
 };
 
 /// A push at a point of the arm.
 struct PushSample {
   double s = 0;  ///< Pushed point: arc length along the unstretched arm, m.
-  /// The other end of the spring, or the pushed point if there is no spring, in W, m.
+  /// Fixed end of the spring in W, m; without a spring, the pushed point.
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< Force on the arm, N.
 };
@@ -68,7 +68,7 @@ struct StateMessage {
   bool is_recording = false;
   bool is_unsafe = false;
   bool is_weightless = false;  ///< Whether weight and loads are switched off.
-  /// Number of discontinuous changes of the whole state so far; it wraps around.
+  /// Number of discontinuous changes of the whole state so far, modulo 65536.
   std::uint16_t leaps = 0;
   std::uint32_t sequence = 0;
   double time = 0;  ///< Time, s.
@@ -79,17 +79,17 @@ struct StateMessage {
   std::vector<ActuatorSample> actuators;
   std::optional<RodEnergy> energy;  ///< Energies of an arm with inertia.
   std::optional<PushSample> push;
-  std::optional<double> pace;  ///< Speed relative to real time, if it is slower.
+  std::optional<double> pace;  ///< Speed of the simulation relative to real time; missing if it keeps up.
   std::vector<ContactSample> contacts;
 };
 
 /// Returns the samples of a state message: the ends of every arc, and points between them. Each piece between
-/// two samples is one arc that turns by at most a right angle.
+/// two samples is one arc with an angle of at most 90 degrees.
 [[nodiscard]] std::vector<ArmSample> arm_samples(const Backbone& backbone);
 /// Returns the samples of consecutive arcs from the base to the frame `tip`.
 [[nodiscard]] std::vector<ArmSample> arm_samples(std::span<const Arc> arcs, const Pose& tip);
 
-/// Returns the binary message. Throws std::length_error for more than 65535 items of any kind.
+/// Returns the binary message. Throws std::length_error if there are more than 65535 items of a kind.
 [[nodiscard]] std::string state_message(const StateMessage& state);
 /// Parses a state message, in single precision. Returns std::nullopt if `bytes` is not a valid message.
 [[nodiscard]] std::optional<StateMessage> read_state_message(std::string_view bytes);
@@ -97,7 +97,7 @@ struct StateMessage {
 /// Formats of images.
 enum class ImageFormat : std::uint16_t { jpeg = 0, png = 1 };
 
-/// Returns an image message for a client, which is a header followed by the image file.
+/// Returns an image message for a client: a header, followed by the image file.
 [[nodiscard]] std::string image_message(std::uint8_t camera, ImageFormat format, std::uint32_t number,
                                         double time, std::string_view file);
 

@@ -18,7 +18,7 @@ namespace {
 constexpr double smallest = 1e-4;  // Smallest difference that is shown, m.
 constexpr double largest = 1e6;    // Plausibility limit of a length, m.
 
-InputError no_arm() { return input_error("the log", "the poses of its true arm make no arm"); }
+InputError no_arm() { return input_error("the log", "the poses of its true arm do not form an arm"); }
 
 // Logged values are validated.
 Pose pose_of(const PoseMessage& message) {
@@ -86,8 +86,8 @@ void add_true_arm(const std::vector<ArmSample>& truth, const Backbone& commanded
   extras.ghosts.push_back({true_arm.id, true_arm.label, true_arm.color, truth});
   if (!extras.title.empty()) return;
   extras.title = "Truth";
-  extras.text =
-      fmt::format("up to {:.1f} mm from the commanded shape, the tip {:.1f} mm", 1000 * most, 1000 * last);
+  extras.text = fmt::format("distance from the commanded shape: at most {:.1f} mm, at the tip {:.1f} mm",
+                            1000 * most, 1000 * last);
 }
 
 }  // namespace flexura

@@ -24,7 +24,7 @@ namespace flexura {
 /// Interpolates between two poses at the fraction `part`.
 [[nodiscard]] Pose interpolate(const Pose& from, const Pose& to, double part);
 
-/// State of the arm and a camera at one instant, for a picture.
+/// State of the arm and a camera at one time, for a picture.
 struct Instant {
   double time = 0;  ///< Time, s.
   ArmState arm;     ///< State that the drives impose.
@@ -33,13 +33,13 @@ struct Instant {
   std::shared_ptr<const Backbone> shape = {};
 };
 
-/// Scales for pushing an arm with forces that move it visibly but not too far.
+/// Scales for pushes that move the arm visibly but not too far.
 struct PushScale {
   double length = 0;  ///< Length of the arm at rest, m.
-  /// Stiffness of the push spring, N/m: five times that of the arm's tip at the start.
+  /// Stiffness of the push spring, N/m: five times the stiffness of the arm's tip at the start.
   double stiffness = 0;
   double most =
-      0;  ///< Force limit, N. This force would move the tip by the arm's length if the arm were linear.
+      0;  ///< Largest force, N. If the arm were linear, this force would move the tip by the arm's length.
 };
 
 /// A rig of an experiment, prepared for viewing. Immutable, so that threads can share it.
@@ -50,12 +50,13 @@ class ViewedRig {
   Experiment experiment;
   ArmModel model, truth;  ///< Model and truth of the arm.
   ArmState initial;       ///< Initial state of the true arm.
-  bool is_rod;  ///< Whether the true arm is a rod. Its plant then computes the backbone instead of `truth`.
+  /// Whether the true arm is a rod. The simulated plant then computes the backbone instead of `truth`.
+  bool is_rod;
   std::vector<PulledTendon> actuators;  ///< Tendons that can be pulled individually.
   bool has_weight = false;              ///< Whether weight or loads act on the true arm.
   std::optional<PushScale> push = {};   ///< Scales for pushes; missing if forces do not move the arm.
   bool touches = false;                 ///< Whether obstacles exert forces on the true arm.
-  bool has_inertia = false;             ///< Whether the true arm has inertia and can swing.
+  bool has_inertia = false;             ///< Whether the true arm has inertia and can oscillate.
   std::vector<Obstacle> obstacles;
   std::vector<Obstacle> forbidden;  ///< Obstacles that the arm must not touch.
   std::optional<Drive> drive;       ///< Drive of the model.
@@ -66,51 +67,51 @@ class ViewedRig {
   /// Returns the index of the camera with this name; std::nullopt if there is none.
   [[nodiscard]] std::optional<std::size_t> camera(std::string_view name) const;
 
-  /// Returns the readings of a camera's head and stage at the start.
+  /// Returns the measured positions of a camera's head and stage at the start.
   [[nodiscard]] CameraReading first_reading(std::size_t camera) const;
   /// Returns the true positions of a camera's head and stage at the start.
   [[nodiscard]] CameraStance first_stance(std::size_t camera) const;
-  /// Returns the true positions of a camera's head and stage for their readings, without backlash and
-  /// quantisation. Readings are relative to the initial positions of the model.
+  /// Returns the true positions of a camera's head and stage for measured positions, without backlash and
+  /// quantisation. Differences between truth and model at the start remain.
   [[nodiscard]] CameraStance stance(std::size_t camera, const CameraReading& reading) const;
-  /// Returns the readings of a camera's head and stage for their true positions: the inverse of stance().
+  /// Returns the measured positions of a camera's head and stage for true positions: the inverse of stance().
   [[nodiscard]] CameraReading reading(std::size_t camera, const CameraStance& stance) const;
-  /// Returns the camera's view according to its model and a reading.
+  /// Returns the camera's view according to its model and measured positions.
   [[nodiscard]] View nominal_view(std::size_t camera, const CameraReading& reading) const;
 };
 
 using ViewedRigPtr = std::shared_ptr<const ViewedRig>;
 
-/// Returns the sample of a camera at the true position `stance`, with the readings at this position as
-/// commanded positions.
+/// Returns the sample of a camera at the true position `stance`. Its commanded positions are the measured
+/// positions at `stance`.
 [[nodiscard]] CameraSample camera_sample(const ViewedRig& rig, std::size_t camera,
                                          const CameraStance& stance);
 
-/// A frame that can be rendered on any thread, because it refers to no changing data.
+/// A frame that can be rendered on any thread, because its data do not change.
 struct ValueShot {
   Shot shot;
   std::shared_ptr<const std::vector<Instant>> instants;  ///< States that the frame shows.
 };
 
-/// Returns the frame that shows `instants` (one or more, in ascending order of time) and interpolates between
-/// them. The exposure starts at `start` (s).
+/// Returns a frame for rendering. `instants`: at least one state in ascending order of time; the frame
+/// interpolates between them. The exposure starts at `start` (s).
 [[nodiscard]] ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t frame,
                                    double start, std::vector<Instant> instants);
 
-/// Returns the shot, with the lens covered if the sensor configuration covers it at `time` (s since a run's
-/// start).
+/// Returns the shot with the lens covered if the sensor's configuration covers the lens at `time` (s since a
+/// run's start).
 [[nodiscard]] ValueShot with_covers(ValueShot shot, double time);
 
 /// Returns the axis positions of the camera at mid-exposure of the frame.
 [[nodiscard]] CameraStance stance_in(const ValueShot& shot);
 
-/// Returns whether two frames are certain to give equal pictures: everything is at rest in equal positions,
+/// Returns true if the pictures of two frames are certainly equal: everything is at rest in equal positions,
 /// and the noise is equal.
 [[nodiscard]] bool show_the_same(const ValueShot& a, const ValueShot& b);
 
-/// Returns the times of the instants that value_shot() needs for a frame that starts at `start` (s). It is
-/// one time for an instantaneous exposure. Otherwise there are so many that the motion between them is nearly
-/// linear.
+/// Returns the times of the instants that value_shot() needs for a frame that starts at `start` (s). For an
+/// instantaneous exposure, it is one time. Otherwise, the times are so close that the motion between them is
+/// nearly linear.
 [[nodiscard]] std::vector<double> times_of_instants(const SensorConfig& sensor, double start);
 
 }  // namespace flexura

@@ -156,8 +156,8 @@ void Viewer::open_last(Reply reply) {
 void Viewer::open_example(const std::string& name, const Reply& reply) {
   const auto found = std::ranges::find(start_.examples, name, &ViewExample::name);
   if (found == start_.examples.end())
-    throw ViewRefusal(
-        fmt::format("there is no example {}: expected one of the hello's examples", text_node(name).brief()));
+    throw ViewRefusal(fmt::format("there is no example {}: expected one of the examples in the message hello",
+                                  text_node(name).brief()));
   if (is_opening_) throw ViewRefusal("a recording is being opened");
   if (live_ != nullptr && live_->is_running()) throw ViewRefusal("tasks are running: cancel them first");
   replace_rig(found->load(), found->results, found->text, reply);
@@ -168,8 +168,7 @@ void Viewer::open_example(const std::string& name, const Reply& reply) {
 
 // The recording stays, to be opened again.
 void Viewer::branch(double time, const Reply& reply) {
-  if (shown_ != recording_.get())
-    throw ViewRefusal("this is no recording: expected a recording to start from");
+  if (shown_ != recording_.get()) throw ViewRefusal("this is a live rig: expected a recording to start from");
   if (is_opening_) throw ViewRefusal("a recording is being opened");
   if (live_ != nullptr && live_->is_running()) throw ViewRefusal("tasks are running: cancel them first");
   replace_rig(std::make_shared<const ViewedRig>(experiment_from(recording_->recording(), time)),
@@ -201,7 +200,7 @@ void Viewer::give_text(ClientId client, const ExperimentRequest& request, const 
     camera = rig->camera(*request.camera);
     if (!camera)
       throw ViewRefusal(
-          fmt::format("camera = {}: there is no camera of that name", text_node(*request.camera).brief()));
+          fmt::format("camera = {}: there is no camera with this name", text_node(*request.camera).brief()));
   }
   answer_later(
       [request, rig, instant, camera, file = is_recording ? "" : start_.text, folder = start_.folder,

@@ -28,16 +28,17 @@ struct ViewExample {
 
 /// Initial content of a viewer: a recording or a rig.
 struct ViewStart {
-  std::string session;                     ///< Identifier that differs for each start of the program.
-  ViewedRigPtr rig = {};                   ///< The rig; null only if there is a recording.
-  RecordingPtr recording = {};             ///< The recording; may be null.
-  std::filesystem::path results = {};      ///< Folder for the results of task runs; default: results/view.
-  std::shared_ptr<RunLink> run = {};       ///< An active run; its recording is opened at its end.
-  double speed = 0;                        ///< Speed of `run` relative to real time; 0: as fast as possible.
-  std::vector<ViewExample> examples = {};  ///< Other experiments to open; empty if a file was given.
-  std::string text = {};                   ///< Text of the rig's experiment file; "": unknown.
-  std::filesystem::path folder = {};       ///< Folder for saved experiments.
-  std::string stem = "experiment";         ///< Beginning of the names of saved experiments.
+  std::string session;                 ///< Identifier that differs for each start of the program.
+  ViewedRigPtr rig = {};               ///< The rig; null only if there is a recording.
+  RecordingPtr recording = {};         ///< The recording; may be null.
+  std::filesystem::path results = {};  ///< Folder for the results of task runs; default: results/view.
+  std::shared_ptr<RunLink> run = {};  ///< An active run. After the run's end, the viewer opens its recording.
+  double speed = 0;                   ///< Speed of `run` relative to real time; 0: as fast as possible.
+  /// Experiments that the viewer offers to open; empty if the user gave a file.
+  std::vector<ViewExample> examples = {};
+  std::string text = {};              ///< Text of the rig's experiment file; "": unknown.
+  std::filesystem::path folder = {};  ///< Folder for saved experiments.
+  std::string stem = "experiment";    ///< Beginning of the names of saved experiments.
 };
 
 /// Parses the requests of clients, answers them, and switches between rig and recording. Not thread-safe.
@@ -48,19 +49,20 @@ class Viewer {
 
   void opened(ClientId client);
   void closed(ClientId client);
-  /// `debt` is released when the client has its answer, or can no longer get an answer.
+  /// Handles a message of a client. `debt` is released when the client has the answer, or can no longer get
+  /// one.
   void on_message(ClientId client, const std::string& text,
                   const std::shared_ptr<const void>& debt = nullptr);
   void asked(const std::string& target, const std::function<void(HttpAnswer)>& answer);
   void advance(double now);
 
-  /// Reports an error to a client, or to all clients. A repeated error is reported once.
+  /// Reports an error to a client, or to all clients. If an error is repeated, it is reported only once.
   void failed(std::optional<ClientId> client, std::string why);
 
   /// Cancels a run of tasks.
   void cancel();
 
-  /// Returns whether advance() is needed: a client is connected, or a run has a set speed.
+  /// Returns whether advance() must be called: a client is connected, or a run has a given speed.
   [[nodiscard]] bool is_watched() const {
     return !clients_.empty() || (live_ != nullptr && live_->is_pacing());
   }

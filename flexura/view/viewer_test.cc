@@ -105,7 +105,7 @@ TEST_F(ViewerTest, RepliesToEverythingUnderItsNumber) {
   EXPECT_TRUE(send_text("nonsense").find("id")->empty());
   EXPECT_THAT(
       error_of(send_text(R"({"id":5,"do":"head","camera":"back","pan":0})")),
-      StrEq("camera = \"back\": there is no camera of that name; expected one of \"front\", \"side\""));
+      StrEq("camera = \"back\": there is no camera with this name; expected one of \"front\", \"side\""));
   EXPECT_THAT(error_of(send_text("{\"id\":6,\"do\":\"\xff\"}")), HasSubstr("UTF-8"));
 }
 
@@ -197,8 +197,7 @@ TEST_F(ViewerTest, AnswersDocuments) {
   EXPECT_EQ(got.status, 404);
   viewer_.asked("/secret", keep);
   EXPECT_EQ(got.status, 404);
-  EXPECT_EQ(*parse_json(got.body, "body").find("error")->as<std::string>(),
-            "there is nothing at this address");
+  EXPECT_EQ(*parse_json(got.body, "body").find("error")->as<std::string>(), "nothing exists at this address");
 }
 
 TEST(ViewerOfARig, StaysAsItIsWhateverIsGot) {
@@ -359,7 +358,7 @@ TEST(ViewerOfARig, GivesChecksAndSavesTheTextOfItsExperiment) {
   };
   EXPECT_EQ(text_of(save("mine-2.toml"), "file"), (folder.path() / "mine-2.toml").string());
   EXPECT_EQ(read_text_file(folder.path() / "mine-2.toml", 10'000), text);
-  EXPECT_THAT(error_in(save("mine-2.toml")), HasSubstr("exists already"));
+  EXPECT_THAT(error_in(save("mine-2.toml")), HasSubstr("already exists"));
   EXPECT_THAT(error_in(save("../mine.toml")), HasSubstr("expected a name"));
   const Node refused = ask(R"("do":"save","name":"bad.toml","text":"seed = -1")");
   EXPECT_EQ(refused.find("result")->find("file"), nullptr);

@@ -11,12 +11,13 @@
 
 namespace flexura {
 
-/// Background work with a thread for each lane.
+/// Background work with one thread per lane.
 class Workers : public Background {
  public:
-  /// `back` receives the functions that must be called on the session's thread. It is called from any thread.
+  /// `back` receives functions that must be called on the session's thread. `back` itself is called from any
+  /// thread.
   explicit Workers(std::function<void(After)> back);
-  /// Finishes active jobs and drops waiting ones.
+  /// Finishes active jobs and discards waiting jobs.
   ~Workers() override;
 
   void run(Lane lane, Job job) override;

@@ -123,7 +123,7 @@ ArmFinder& ArmFinder::operator=(ArmFinder&&) noexcept = default;
 void ArmFinder::Work::segment(const Image<std::uint8_t>& gray) {
   if (gray.channels() != 1)
     throw std::invalid_argument(
-        fmt::format("a picture with {} channels: expected a gray one", gray.channels()));
+        fmt::format("a picture with {} channels: expected a gray picture", gray.channels()));
   order.clear();
   seen.axis.clear();
   seen.notes.clear();
@@ -147,7 +147,7 @@ void ArmFinder::Work::find_axis(const Image<Value>& picture, double scale) {
                            [&](std::uint32_t i) { return components.list[i].area; });
   if (order.empty()) {
     seen.reason =
-        fmt::format("nothing of at least {} px is {} enough", least_area, name_of(seen.threshold.figure));
+        fmt::format("no figure with at least {} px is {} enough", least_area, name_of(seen.threshold.figure));
     return;
   }
   std::string first_reason;
@@ -178,8 +178,8 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
   if (static_cast<double>(component.area) < least_slenderness * width * width ||
       component.on_border > 6 * width + 12) {
     seen.reason = fmt::format(
-        "the largest figure is not a tube: {} px large, about {:.0f} px across, {} px of it on the picture's "
-        "border",
+        "the largest figure is not a tube: it has {} px, a width of about {:.0f} px, and {} px on the "
+        "picture's border",
         component.area, width, component.on_border);
     return false;
   }
@@ -194,7 +194,7 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
   if (best.axis.empty()) {
     seen.axis.clear();
     seen.reason =
-        fmt::format("the borders of the figure ({} px, about {:.0f} px across) cannot be followed: {}",
+        fmt::format("the borders of the figure ({} px, width about {:.0f} px) cannot be tracked: {}",
                     component.area, width, reason_against_following(width));
     return false;
   }
@@ -206,11 +206,11 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
 
 std::string ArmFinder::Work::reason_against_following(double width) const {
   if (std::isfinite(least_blur) && least_blur > std::max(least_blurred, blurred_share * width))
-    return fmt::format("they are blurred by some {:.0f} px", least_blur);
+    return fmt::format("their blur is about {:.0f} px", least_blur);
   const double contrast = seen.threshold.bright - seen.threshold.dark;
   if (contrast < faint)
-    return fmt::format(
-        "it is not a tube, points at the camera, or is too faint (a contrast of {:.0f} of 255)", contrast);
+    return fmt::format("it is not a tube, points at the camera, or is too faint (contrast {:.0f} of 255)",
+                       contrast);
   return "it is not a tube, or points at the camera";
 }
 
@@ -303,7 +303,7 @@ void ArmFinder::Work::note_others() {
         static_cast<double>(components.list[i].area) > 0.2 * area)
       ++others;
   if (others > 0)
-    seen.notes.push_back(fmt::format("{} other figure{} of similar size: the largest tube is measured",
+    seen.notes.push_back(fmt::format("{} other figure{} of similar size: the largest tube was measured",
                                      others, others > 1 ? "s" : ""));
   if (seen.covered < 0.8)
     seen.notes.push_back(fmt::format(

@@ -20,8 +20,8 @@ struct Photograph;
 /// Settings of the search for an arm in pictures.
 struct ArmFinderConfig {
   ThresholdConfig threshold;  ///< Separation of foreground and background.
-  /// A pixel (u, v) near the arm's base, px. Default: the end that the picture's border cuts, if exactly one
-  /// end is cut, otherwise the lower end in the picture.
+  /// A pixel (u, v) near the arm's base, px. Default: if the picture's border cuts exactly one end of the
+  /// arm, this end, otherwise the lower end in the picture.
   std::optional<Eigen::Vector2d> base;
   /// Lower bound on the standard deviations of samples, px.
   double least_sigma = 0;
@@ -32,7 +32,9 @@ struct AxisSample {
   /// Point of the centerline, px; (0, 0) is the middle of the top-left pixel.
   Eigen::Vector2d pixel = {0, 0};
   Eigen::Vector2d normal = {
-      0, 1};         ///< Unit normal: the direction from base to tip, rotated by 90 degrees from u towards v.
+      /// Unit normal of the centerline: the direction from base to tip, rotated by 90 degrees from u towards
+      /// v.
+      0, 1};
   double width = 0;  ///< Distance between the arm's borders along the normal, px.
   double sigma = 0;  ///< Standard deviation of `pixel` along the normal, px.
   /// Whether both borders are visible; otherwise the sample is extrapolated from its neighbours.
@@ -51,8 +53,8 @@ const std::vector<std::string>& names_of(const AxisEndKind*);
 struct AxisEnd {
   AxisEndKind kind = AxisEndKind::lost;
   Eigen::Vector2d pixel = {0, 0};  ///< Position of the centerline's end, px.
-  /// Distance by which the silhouette extends beyond `pixel`, px. It is above 0 for an end seen at an angle
-  /// and for a round end.
+  /// Distance by which the silhouette extends beyond `pixel`, px. It is above 0 for a round end, and for an
+  /// end that does not face sideways in the picture.
   double bulge = 0;
   double sigma = 0;  ///< Standard deviation of `pixel` along the centerline at a free end, px.
 };
@@ -62,16 +64,16 @@ struct ArmObservation {
   Threshold threshold;             ///< Threshold that separates the arm from the background.
   std::string reason;              ///< Reason why no arm was found; otherwise "".
   std::vector<std::string> notes;  ///< Further messages about the picture, for the user.
-  std::vector<AxisSample> axis;    ///< Samples of the centerline, base first, one or two pixels apart.
+  std::vector<AxisSample> axis;    ///< Samples of the centerline from base to tip, one or two pixels apart.
   std::array<AxisEnd, 2> ends;     ///< End at the base and end at the tip.
-  /// Standard deviation of the blur of the arm's borders, including that of the pixels, px.
+  /// Standard deviation of the blur of the arm's borders, including the blur by the pixels, px.
   double blur = 0;
   double noise = 0;        ///< Standard deviation of the picture's noise, on a scale from 0 to 255.
   double contrast = 0;     ///< Contrast across the arm's borders, on a scale from 0 to 255.
   bool is_closed = false;  ///< Whether the centerline is a closed curve without ends.
-  double covered = 0;      ///< Fraction of the silhouette that the centerline with its widths covers.
-  /// Points of the silhouette's outer border that do not belong to the centerline; only if `covered` is
-  /// small. Without a centerline: all points of the outer border.
+  double covered = 0;      ///< Fraction of the silhouette that is covered by the centerline and its widths.
+  /// Points of the silhouette's outer border that are not on the borders of the measured tube; only if
+  /// `covered` is small. Without a centerline, it has all points of the outer border.
   std::vector<BorderPoint> unexplained;
   /// Sample points over the whole silhouette, px (strew() in runs.h); empty if no arm was found.
   std::vector<Eigen::Vector2d> places;
@@ -83,27 +85,27 @@ struct ArmObservation {
 };
 
 /// Finds the arm in pictures (docs/vision.md). The steps are a threshold, runs of pixels, connected
-/// components, and tracking of the tube's two borders with subpixel accuracy. After the first pictures it
-/// allocates no more memory. The result depends on the picture alone, not on earlier pictures.
+/// components, and tracking of the tube's two borders with subpixel accuracy. After the first pictures, it
+/// allocates no more memory. The result depends only on the picture, not on earlier pictures.
 class ArmFinder {
  public:
   /// Makes a finder that uses `config` for every picture.
   explicit ArmFinder(ArmFinderConfig config = {});
   ~ArmFinder();
-  /// A finder that was moved from supports only assignment and destruction.
+  /// After a move, the moved-from finder supports only assignment and destruction.
   ArmFinder(ArmFinder&&) noexcept;
   ArmFinder& operator=(ArmFinder&&) noexcept;
 
-  /// Finds the arm in a gray picture; the result is valid until the next call. Throws std::invalid_argument
-  /// for more than one channel.
+  /// Finds the arm in a gray picture. The result is valid until the next call. Throws std::invalid_argument
+  /// for a picture with more than one channel.
   const ArmObservation& find(const Image<std::uint8_t>& gray);
   /// Finds the arm in a picture with more than 8 bits per value, whose brightness is from 0 to `white`.
   const ArmObservation& find(const Image<std::uint16_t>& gray, int white = 65535);
   /// Finds the arm in a picture, gray or in colour, whose largest value is `white`. Throws
   /// std::invalid_argument if `white` is below 1.
   const ArmObservation& find(const Picture& picture, int white);
-  /// Finds the arm in a picture from a file, with all bits of its values. For a mask, `mask_sigma` is a lower
-  /// bound on standard deviations.
+  /// Finds the arm in a picture from a file, with all bits of its values. For a mask, standard deviations are
+  /// at least `mask_sigma`.
   const ArmObservation& find(const Photograph& photograph);
 
  private:

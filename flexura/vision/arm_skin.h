@@ -18,16 +18,15 @@ namespace flexura {
 /// Returns the median of each channel. `colors` must not be empty.
 [[nodiscard]] Eigen::Vector3d median_color(const std::vector<Eigen::Vector3d>& colors);
 
-/// A range of samples [first, last) on a line along the arm.
+/// A range [first, last) of samples on a line along the arm.
 struct Stretch {
   std::size_t first, last;
 };
-/// Returns the ranges of samples whose colour differs by more than `bound` from the arm's colour `own`.
+/// Returns the ranges of samples whose colour differs by more than `bound` from `own`, the colour of the arm.
 [[nodiscard]] std::vector<Stretch> stretches(const std::vector<Eigen::Vector3d>& colors,
                                              const Eigen::Vector3d& own, double bound);
 
-/// The arm's visible surface in arm coordinates: positions and colours on lines along the centerline, sampled
-/// one pixel apart.
+/// The arm's visible surface: positions and colours on lines along the centerline, sampled one pixel apart.
 struct ArmSkin {
   /// Distances of the lines from the centerline, in half widths of the arm.
   static constexpr std::array<double, 7> lines = {-0.72, -0.5, -0.25, 0, 0.25, 0.5, 0.72};

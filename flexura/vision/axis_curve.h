@@ -13,13 +13,13 @@
 
 namespace flexura {
 
-/// Makes a smooth centerline from the cross-sections of a tube. The cross-sections are measured again along
-/// the normals of the curve, and smoothed according to the noise. After the first pictures it allocates no
-/// more memory.
+/// Computes a smooth centerline from the cross-sections of a tube. Measures the cross-sections again along
+/// the normals of the curve, and smooths them according to the noise. After the first pictures, it allocates
+/// no more memory.
 class AxisCurve {
  public:
-  /// Computes axis and ends of `seen`, in the order of `sections`. `stops` has the reasons why tracking
-  /// ended, at the first and at the last section. Returns false if no centerline remains.
+  /// Computes the axis and the ends of `seen`, in the order of `sections`. `stops`: the reasons why tracking
+  /// ended at the first and at the last section. Returns false if no centerline remains.
   template <typename Value>
   bool fit(TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& stops,
            std::vector<CrossSection>& sections, ArmObservation& seen);

@@ -9,7 +9,7 @@
 namespace flexura {
 
 /// Finds the ends of the centerline in `seen` and sets seen.ends. At a free end, the silhouette is measured
-/// along lines parallel to the centerline. With the tube's half width h, the image of a flat or round end is
+/// along lines parallel to the centerline. For a tube with half width h, the image of a flat or round end is
 /// half an ellipse,
 ///   reach(y) = x + bulge sqrt(1 - (y/h)^2).
 /// The tube's sides, and hence the backbone, end at x. The centerline is extended along its arc to x.

@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// Visible points of a centerline at distances at which their errors are nearly independent.
+/// Visible points of a centerline, so far apart that their errors are nearly independent.
 struct AxisPoints {
   std::vector<Eigen::Vector2d> pixels;  ///< Points, px.
   double sigma = 0;  ///< Root mean square of the points' standard deviations across the centerline, px.

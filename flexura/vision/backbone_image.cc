@@ -95,7 +95,7 @@ BackboneAxis backbone_axis(const Lens& lens, const std::vector<AxisSample>& axis
 
 std::vector<double> backbone_depths(const Lens& lens, const std::vector<AxisSample>& axis, double radius) {
   if (!(radius > 0) || !std::isfinite(radius))
-    throw std::invalid_argument(fmt::format("a radius of {} m: expected one above 0", radius));
+    throw std::invalid_argument(fmt::format("a radius of {} m: expected a radius above 0", radius));
   std::vector<double> depths;
   depths.reserve(axis.size());
   for (const AxisSample& sample : axis) {

@@ -13,24 +13,22 @@ namespace flexura {
 /// Result of an edge fit.
 struct StepFit {
   double offset = 0;    ///< Distance of the edge from the expected position, in units of the sample distance.
-  double contrast = 0;  ///< Brightness after the edge minus that before it.
-  double residual = 0;  ///< Standard deviation of the samples' difference from the model.
+  double contrast = 0;  ///< Brightness after the edge minus brightness before the edge.
+  double residual = 0;  ///< Standard deviation of the difference between samples and model.
 };
 
 /// Maximum-likelihood estimator of the position of a brightness step along a line of samples with uniform
-/// noise. The step is blurred by a Gaussian. The brightness on both sides is unknown. On the side before the
-/// edge the brightness also has an unknown slope, because a round tube is shaded towards its border. The
-/// model
+/// noise. The step is blurred by a Gaussian. The brightness on both sides is unknown. Before the edge, the
+/// brightness also has an unknown slope, because a round tube is shaded towards its border. The model
 ///   a + g min(x - p, 0) + C H(x - p), both blurred,
 /// is linearized at the expected position of the edge.
 class BlurredStep {
  public:
   static constexpr int before = 6, after = 5, taps = before + 1 + after;
 
-  /// Lengths are in units of the sample distance. `phase` is the distance from the last sample before or at
-  /// the expected edge to this edge. `blur` > 0 is the standard deviation of the total blur. `first` is the
-  /// number of samples used before this last sample, 1 to `before`; with fewer than 4 samples the model has
-  /// no slope.
+  /// Lengths are in units of the sample distance. `phase`: distance from the last sample before or at the
+  /// expected edge to the edge. `blur` > 0: standard deviation of the total blur. `first`: number of samples
+  /// used before this last sample, 1 to `before`. If `first` is below 4, the model has no slope.
   BlurredStep(double blur, double phase, int first);
 
   /// Returns the standard deviation of the offset for independent noise whose standard deviation equals the
@@ -50,8 +48,8 @@ class BlurredStep {
   int free_ = 1;
 };
 
-/// Cache of BlurredStep objects for all blurs and phases, made when first needed. The spacing, 1/32 in phase
-/// and 4 % in blur, is finer than necessary.
+/// Cache of BlurredStep objects for all blurs and phases. Each is made when it is first needed. The spacing
+/// is 1/32 in phase and 4 % in blur, which is fine enough.
 class BlurredSteps {
  public:
   static constexpr int phases = 32;
@@ -71,14 +69,14 @@ class BlurredSteps {
   static std::vector<std::uint8_t> blur_places();
 };
 
-/// A geometric series of blurs that are tried to find the blur of a picture.
+/// A geometric series of blurs that are tried in order to estimate the blur of a picture.
 struct BlurSeries {
   double first = 0.4, ratio = 1.25;
 
   [[nodiscard]] double at(std::size_t i) const { return first * std::pow(ratio, static_cast<double>(i)); }
-  /// Returns the blur of smallest residual, interpolated by a parabola through the smallest residual and its
-  /// neighbours. `left` has the residual of each tried blur and must not be empty; infinite entries count as
-  /// not tried.
+  /// Returns the blur with the smallest residual, interpolated by a parabola through the smallest residual
+  /// and its neighbours. `left`: residuals of the tried blurs, not empty. Infinite entries count as not
+  /// tried.
   [[nodiscard]] double least(std::span<const double> left) const;
 };
 

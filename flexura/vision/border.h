@@ -13,27 +13,28 @@
 namespace flexura {
 
 /// Parameter `widest_blur` of EdgeFinder for single borders, in samples. The neglected tails of the blur
-/// shift a border; for the two borders of an arm these shifts cancel.
+/// shift a border. For the two borders of an arm, these shifts cancel.
 inline constexpr double lone_border_blur = 1.2;
 
 /// A point of a figure's outer border.
 struct BorderPoint {
   Eigen::Vector2d pixel = {0, 0};   ///< Subpixel position, px.
-  Eigen::Vector2d normal = {1, 0};  ///< Unit vector, outward.
+  Eigen::Vector2d normal = {1, 0};  ///< Outward unit normal.
   double contrast = 0;              ///< Contrast across the border, on a scale from 0 to 255.
-  /// Standard deviation of the local brightness from a blurred step, on the same scale.
+  /// Standard deviation of the difference between the local brightness and a blurred step, on a scale from 0
+  /// to 255.
   double residual = 0;
 };
 
 /// Finds the outer border of a component with subpixel accuracy. The points are in order around the
-/// component. The search starts at each pixel that touches the outer background and follows the picture's
-/// gradient at this pixel. Borders of holes, and parts that the picture's border cuts, are omitted. `blur` is
-/// the standard deviation of the border's blur, px.
+/// component. At each pixel that touches the outer background, it searches the border along the picture's
+/// gradient. Borders of holes, and parts that the picture's border cuts, are omitted. `blur` is the standard
+/// deviation of the border's blur, px.
 void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, const Components& components,
                  std::uint32_t component, double blur, std::vector<BorderPoint>& border);
 
 /// The largest figure of a picture, with at least 24 pixels, and its border. Figures that touch the picture's
-/// border are considered only if all figures touch it.
+/// border are considered only if all figures touch the border.
 struct FigureBorder {
   Threshold threshold;
   std::string reason;               ///< Reason why no figure was found; otherwise "".

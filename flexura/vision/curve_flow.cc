@@ -25,10 +25,10 @@ cv::Mat mat_of(const Image<std::uint8_t>& image) {
 
 void check_pictures(const Image<std::uint8_t>& before, const Image<std::uint8_t>& after) {
   if (before.channels() != 1 || after.channels() != 1)
-    throw std::invalid_argument("flow between pictures that are not gray");
+    throw std::invalid_argument("optical flow needs gray pictures");
   if (before.width() != after.width() || before.height() != after.height()) {
-    throw std::invalid_argument(fmt::format("flow between pictures of {} x {} and {} x {} px", before.width(),
-                                            before.height(), after.width(), after.height()));
+    throw std::invalid_argument(fmt::format("optical flow between pictures of {} x {} and {} x {} px",
+                                            before.width(), before.height(), after.width(), after.height()));
   }
 }
 
@@ -79,7 +79,8 @@ void AngleIntegrator::add(std::span<const double> turns) {
 
 double AngleIntegrator::anchor(std::span<const double> measured, double share) {
   if (measured.size() != angles_.size())
-    throw std::invalid_argument(fmt::format("{} measured angles for {}", measured.size(), angles_.size()));
+    throw std::invalid_argument(
+        fmt::format("{} measured angles for {} angles", measured.size(), angles_.size()));
   double squares = 0, count = 0;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     if (!std::isfinite(measured[i])) continue;

@@ -11,8 +11,8 @@
 namespace flexura {
 
 /// Returns the motion of the image at given positions from one gray picture to the next, px. Uses OpenCV's
-/// pyramidal Lucas-Kanade method (J.-Y. Bouguet, 2001). Empty for positions that are not found again. Throws
-/// std::invalid_argument for pictures of different sizes, or pictures that are not gray.
+/// pyramidal Lucas-Kanade method (J.-Y. Bouguet, 2001). Positions that are not found again have std::nullopt.
+/// Throws std::invalid_argument for pictures of different sizes, or pictures that are not gray.
 [[nodiscard]] std::vector<std::optional<Eigen::Vector2d>> flow_at(const Image<std::uint8_t>& before,
                                                                   const Image<std::uint8_t>& after,
                                                                   std::span<const Eigen::Vector2d> places);
@@ -24,14 +24,14 @@ class AngleIntegrator {
   /// Starts with measured angles, rad.
   explicit AngleIntegrator(std::vector<double> angles) : angles_(std::move(angles)) {}
 
-  /// Returns the current angles, rad, not wrapped.
+  /// Returns the current angles, rad. They are not wrapped to a range.
   [[nodiscard]] const std::vector<double>& angles() const { return angles_; }
-  /// Adds the changes `turns` to the angles, rad. NaN is replaced by interpolation between neighbours. Throws
-  /// std::invalid_argument for another number of changes than angles.
+  /// Adds the changes `turns` to the angles, rad. A change that is NaN is interpolated between its
+  /// neighbours. Throws std::invalid_argument if the numbers of changes and angles differ.
   void add(std::span<const double> turns);
-  /// Moves each angle by the fraction `share` (0 to 1) of the difference to its measured angle, the shorter
-  /// way around. NaN leaves an angle unchanged. Returns the root mean square of the differences, rad, which
-  /// is the drift.
+  /// Moves each angle towards its measured angle by the fraction `share` (0 to 1) of their difference,
+  /// wrapped to at most half a turn. A measured angle that is NaN leaves its angle unchanged. Returns the
+  /// drift: the root mean square of the differences, rad.
   double anchor(std::span<const double> measured, double share = 1);
 
  private:

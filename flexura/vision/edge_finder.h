@@ -9,11 +9,11 @@
 
 namespace flexura {
 
-/// Result of the search for a figure's border at one place.
+/// Result of the search for a figure's border at one position.
 struct EdgeFit {
   double offset = 0;    ///< Distance of the border outward from the expected position, px.
   double contrast = 0;  ///< Contrast; positive if the background is on the outward side.
-  double residual = 0;  ///< Standard deviation of the brightness from the fitted model.
+  double residual = 0;  ///< Standard deviation of the difference between the brightness and the fitted model.
   /// Standard deviation of the offset, px, for noise whose standard deviation equals the contrast.
   double sigma = 0;
 };
@@ -24,9 +24,10 @@ struct EdgeFit {
 template <typename Value>
 class EdgeFinder {
  public:
-  /// `sign` is 1 for a dark figure, -1 for a bright figure. Only one finder at a time may use `steps`. For a
-  /// blur above `widest_blur`, in samples, only every second pixel is used, and so on. A larger `widest_blur`
-  /// needs less of the figure but neglects more of the blur's tails.
+  /// `sign` is 1 for a dark figure, -1 for a bright figure. Only one finder at a time may use `steps`. If the
+  /// blur exceeds `widest_blur`, in samples, only every second pixel is used; if it still exceeds it, every
+  /// third pixel, and so on. A larger `widest_blur` needs a smaller part of the figure, but neglects more of
+  /// the blur's tails.
   EdgeFinder(const Image<Value>& picture, int sign, BlurredSteps& steps, double widest_blur = 1.6);
 
   /// Returns whether a pixel's four neighbours are in the picture.
@@ -39,7 +40,8 @@ class EdgeFinder {
 
   /// Finds the border near the pixel `from`, px. `normal` is the approximate outward unit normal. `blur` is
   /// the standard deviation of the blur along the normal, px. `room` is the distance inside the border over
-  /// which the figure's brightness is linear, px. Empty if samples would be outside the picture.
+  /// which the figure's brightness is linear, px. Returns std::nullopt if samples would be outside the
+  /// picture.
   [[nodiscard]] std::optional<EdgeFit> look(const Eigen::Vector2d& from, const Eigen::Vector2d& normal,
                                             double blur, double room) const;
 

@@ -12,7 +12,7 @@ namespace {
 
 template <typename Value>
 Image<std::uint8_t> scaled(const Image<Value>& picture, int white) {
-  if (white < 1) throw std::invalid_argument(fmt::format("white at {}: expected at least 1", white));
+  if (white < 1) throw std::invalid_argument(fmt::format("white level {}: expected at least 1", white));
   Image<std::uint8_t> result(picture.width(), picture.height(), picture.channels());
   const auto from = picture.values();
   const auto to = result.values();

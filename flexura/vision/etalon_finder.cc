@@ -245,7 +245,8 @@ EtalonObservation find_etalon(const Image<std::uint8_t>& picture, const Image<st
   const auto left = line_through(found.sides[0], seen.middle_row),
              right = line_through(found.sides[1], seen.middle_row);
   if (!left || !right) {
-    seen.reason = fmt::format("the largest figure ({} px) has no two straight sides in view", largest->area);
+    seen.reason =
+        fmt::format("the largest figure ({} px) does not have two straight visible sides", largest->area);
     return seen;
   }
   seen.left = *left, seen.right = *right;

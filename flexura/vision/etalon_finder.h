@@ -19,10 +19,10 @@ struct UprightLine {
   int count = 0;             ///< Number of rows in which the line was found.
 };
 
-/// Observation of the calibration cylinder (paper, section 3.4), which is dark and upright, and has red lines
-/// parallel to its axis.
+/// Observation of the calibration cylinder (paper, section 3.4). The cylinder is dark and upright, and has
+/// red lines parallel to its axis.
 struct EtalonObservation {
-  Threshold threshold;      ///< Threshold. Its `reason` states why it separates no foreground.
+  Threshold threshold;      ///< Threshold. If it separates no foreground, its `reason` states why.
   std::string reason;       ///< Reason why no cylinder was found; otherwise "".
   int top = 0, bottom = 0;  ///< First and last row of the silhouette.
   double middle_row = 0;    ///< Row half-way between top and bottom, the reference row of UprightLine.
@@ -30,7 +30,7 @@ struct EtalonObservation {
   /// Width of the silhouette at a tenth of its height below the upper end and above the lower end, px
   /// (docs/vision.md).
   double width_above = 0, width_below = 0;
-  /// v of the silhouette's upper and lower end, measured near its middle, px.
+  /// v of the silhouette's upper and lower end, measured near the silhouette's middle, px.
   std::optional<double> upper_edge, lower_edge;
   std::vector<UprightLine> lines;  ///< The red lines, from left to right.
   bool touches_border = false;     ///< Whether a pixel of the silhouette is in the picture's outermost ring.
@@ -41,8 +41,8 @@ struct EtalonObservation {
   }
 };
 
-/// Finds the calibration cylinder in a picture, gray or red, green, blue. `gray` is the same picture in gray
-/// (gray_picture()). In a gray picture the lines are found by their brightness.
+/// Finds the calibration cylinder in a gray or colour picture. `gray`: the picture in gray (gray_picture()).
+/// In a gray picture, the lines are found by their brightness.
 [[nodiscard]] EtalonObservation find_etalon(const Image<std::uint8_t>& picture,
                                             const Image<std::uint8_t>& gray,
                                             const ThresholdConfig& config = {});

@@ -268,7 +268,7 @@ void note_left_out(const std::vector<Stretch>& others, const std::vector<MarkerO
   if (dropped > 0)
     notes.push_back(
         fmt::format("{} spot{} of another colour omitted: at an end of the arm, half hidden, touching "
-                    "another, or too small to be a marker",
+                    "another spot, or too small to be a marker",
                     dropped, dropped > 1 ? "s" : ""));
 }
 

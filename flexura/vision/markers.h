@@ -12,42 +12,45 @@ namespace flexura {
 
 /// Observation of a marker: a coloured band around the arm, or a spot on the arm.
 struct MarkerObservation {
-  /// For a band: image of the backbone in the band's middle, px. For a spot: centre of its visible part, px,
-  /// which may be anywhere on the arm's surface and gives no backbone position.
+  /// For a band: image of the backbone in the band's middle, px. For a spot: centre of its visible part, px.
+  /// A spot may be anywhere on the arm's surface, so it does not determine a backbone position.
   Eigen::Vector2d pixel = {0, 0};
   /// Distance along the centerline from its first sample to the point nearest to `pixel`, px.
   double along = 0;
-  /// Distance from this nearest point to `pixel` along the centerline's normal, px; 0 for bands.
+  /// Distance of `pixel` from the centerline, along the centerline's normal, px; 0 for bands.
   double aside = 0;
   double length = 0;  ///< Length along the centerline, px.
   double sigma = 0;   ///< Standard deviation of `along`, px.
-  /// Bulge of the band's visible front along the centerline, in half widths of the arm. The bulge is the sine
-  /// of the angle between the arm and the image plane. It is positive if the arm comes nearer to the camera
-  /// from base to tip.
+  /// Bulge of the band's visible edges along the centerline, in half widths of the arm. It equals the sine of
+  /// the angle between the arm and the image plane. It is positive if the arm comes nearer to the camera from
+  /// base to tip.
   double bulge = 0;
-  /// Red, green and blue of the marker's middle, from 0 to 255. In a gray picture, the gray value three
-  /// times.
+  /// Red, green and blue of the marker's middle, from 0 to 255. In a gray picture, all three are the gray
+  /// value.
   Eigen::Vector3d color = {0, 0, 0};
-  bool is_band = true;  ///< Whether the marker is a band, visible across the whole arm; otherwise a spot.
+  /// Whether the marker is a band, which is visible across the whole arm; otherwise it is a spot.
+  bool is_band = true;
   /// Whether the marker is probably two markers in one: it is much longer than others, or has two parts.
   bool may_be_merged = false;
 
-  /// Returns whether the marker gives a position on the backbone, unlike spots and possibly merged markers.
+  /// Returns whether the marker determines a position on the backbone. Spots and possibly merged markers do
+  /// not.
   [[nodiscard]] bool determines_place() const { return is_band && !may_be_merged; }
 };
 
 /// All observed markers of an arm.
 struct MarkerObservations {
-  std::vector<MarkerObservation> markers;  ///< Markers, base first.
+  std::vector<MarkerObservation> markers;  ///< Markers from base to tip.
   std::vector<std::string>
-      notes;  ///< Messages about gaps where a marker may be missing, and about omitted candidates.
+      notes;  ///< Messages about gaps in which a marker may be missing, and about omitted candidates.
 };
 
 /// Finds the markers on an arm in `picture` (gray, or red, green, blue) by their difference from the arm's
-/// own colour. In a gray picture bands are found by their brightness. The search for spots covers the whole
-/// visible surface and takes several times as long as the search for bands. Without it, the notes do not
-/// mention possible spots. `arm` must be the observation of the arm in the same picture. The result is empty
-/// for a centerline of fewer than 8 samples and, with a note, for an arm thinner than 4 px.
+/// own colour. In a gray picture, bands are found by their brightness. The search for spots covers the whole
+/// visible surface and takes several times as long as the search for bands. Without this search, the notes do
+/// not mention possible spots. `arm` must be the observation of the arm in the same picture. The result is
+/// empty for a centerline with fewer than 8 samples. It is also empty, with a note, for an arm thinner than 4
+/// px.
 [[nodiscard]] MarkerObservations find_markers(const Image<std::uint8_t>& picture, const ArmObservation& arm,
                                               bool with_spots = true);
 

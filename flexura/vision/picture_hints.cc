@@ -17,7 +17,7 @@ std::optional<std::string> hint_of_size(const Lens& lens, int width, int height)
   const bool is_scaled = factor > 0 && std::abs(high / (factor * height) - 1) < alike;
   return fmt::format(
       "the principal point ({:.4g}, {:.4g}) is far from the middle of this picture of {} x {} px: is the "
-      "camera described for pictures of another size{}?",
+      "camera's description for pictures of another size{}?",
       described.cx, described.cy, width, height,
       is_scaled ? fmt::format(", {:.3g} times as large", factor) : "");
 }
@@ -29,7 +29,8 @@ std::optional<std::string> hint_of_exposure(const Image<std::uint8_t>& gray) {
       static_cast<double>(std::ranges::count(values, 255)) / static_cast<double>(values.size());
   if (!(share > most)) return std::nullopt;
   return fmt::format(
-      "{:.0f} % of the picture is saturated: borders next to saturated areas are shifted, expose less",
+      "{:.0f} % of the picture is saturated: borders next to saturated areas are shifted: use a shorter "
+      "exposure",
       percent * share);
 }
 

@@ -30,8 +30,8 @@ struct Components {
   std::vector<Run> runs;        ///< Runs, row by row from the top, left to right.
   std::vector<Component> list;  ///< Components, in the order of their first runs.
 
-  /// Finds runs and components of the pixels on the foreground's side of the threshold or, with `blocks`, of
-  /// the local threshold.
+  /// Finds runs and components of the foreground pixels. The foreground is separated by `threshold` or, with
+  /// `blocks`, by local thresholds.
   void find(const Image<std::uint8_t>& gray, const Threshold& threshold,
             const BlockThresholds* blocks = nullptr);
 
@@ -47,14 +47,15 @@ struct Components {
   std::vector<std::uint8_t> levels_;
 };
 
-/// Appends sample points of a component, px: in every `spacing`-th row every `spacing`-th pixel, and both
-/// ends of each run. In parts of the component at least `spacing` wide, the distance of any pixel from a
-/// point is at most 1.5 times the spacing.
+/// Appends sample points of a component, px: every Nth pixel in every Nth row, with N = `spacing`, and both
+/// ends of the runs in these rows. In parts of the component that are at least `spacing` wide, each pixel has
+/// a sample point within 1.5 times the spacing.
 void strew(const Components& components, std::uint32_t component, int spacing,
            std::vector<Eigen::Vector2d>& places);
 
-/// Computes threshold and components of a picture; no components if the threshold separates nothing.
-/// `samples` limits the number of pixels in the histogram; all pixels are used if these find no figure.
+/// Computes the threshold and the components of a picture. There are no components if the threshold separates
+/// no foreground. `samples` limits the number of pixels in the histogram. If no figure is found with them,
+/// all pixels are used.
 [[nodiscard]] Threshold segment(const Image<std::uint8_t>& gray, const ThresholdConfig& config,
                                 Components& components, BlockThresholds& blocks,
                                 std::size_t samples = 1U << 30U);

@@ -100,9 +100,10 @@ std::string reason_against(const Histogram& histogram, const Threshold& found, d
   if (found.dark > 255 - dimmest) exposure = "too bright";
   if (found.bright < dimmest) exposure = "too dark";
   if (contrast > spreads * found.spread)
-    return fmt::format("the picture is {}: its two brightnesses are nearer than {} {}", exposure,
+    return fmt::format("the picture is {}: the two classes differ by less than {} in brightness {}", exposure,
                        least_contrast, means);
-  return fmt::format("the picture is {}: no two brightnesses are distinct {}", exposure, means);
+  return fmt::format("the picture is {}: two classes of brightness cannot be distinguished {}", exposure,
+                     means);
 }
 
 // Returns the reason why a fixed level separates nothing although another would.
@@ -111,8 +112,9 @@ std::string reason_against_level(double level, const Threshold& otsu) {
   if (level < otsu.dark) where = "is darker than nearly all of the picture";
   if (level > otsu.bright) where = "is brighter than nearly all of the picture";
   return fmt::format(
-      "the fixed level {:g} {}: its two brightnesses are {:.0f} and {:.0f}, {:g} separates them", level,
-      where, otsu.dark, otsu.bright, otsu.level);
+      "the fixed level {:g} {}: the two classes have the mean brightnesses {:.0f} and {:.0f}, which the "
+      "level {:g} separates",
+      level, where, otsu.dark, otsu.bright, otsu.level);
 }
 
 // Returns the share of bright pixels in the ring `ring` px inside the picture's border. `level`: at (u, v).

@@ -19,8 +19,9 @@ enum class ThresholdMethod {
   otsu,      ///< Maximizes the variance between the two classes (N. Otsu, 1979).
   two_mode,  ///< Takes the deepest valley between the histogram's two peaks.
   fixed,     ///< Takes ThresholdConfig::level.
-  by_block,  ///< Applies Otsu's method to blocks of the picture, with linear interpolation between blocks;
-             ///< for unevenly lit screens.
+  /// Applies Otsu's method to blocks of the picture, with linear interpolation between blocks; for screens
+  /// with uneven brightness.
+  by_block,
 };
 const std::vector<std::string>& names_of(const ThresholdMethod*);
 
@@ -37,12 +38,11 @@ struct ThresholdConfig {
   int block = 32;  ///< Side of a block for the method `by_block`, px.
 };
 
-/// Number of pixels of each brightness. For pictures with more than 8 bits, of each value of the upper 8
-/// bits.
+/// Number of pixels of each brightness. For pictures with more than 8 bits, brightness is the upper 8 bits.
 using Histogram = std::array<std::uint32_t, 256>;
 
-/// Computes the histogram of all pixels or, if there are more than `samples`, of an evenly distributed part
-/// of them.
+/// Computes the histogram of all pixels or, if there are more than `samples`, of an evenly distributed
+/// selection.
 [[nodiscard]] Histogram histogram_of(const Image<std::uint8_t>& gray, std::size_t samples = 1U << 30U);
 
 /// A threshold, with statistics of the two classes. Brightness is on a scale from 0 to 255.
@@ -57,8 +57,8 @@ struct Threshold {
   std::string reason;
 };
 
-/// Returns the threshold of a histogram by the methods otsu, two_mode or fixed; with a reason if the
-/// threshold separates nothing.
+/// Returns the threshold of a histogram by one of the methods otsu, two_mode and fixed. The threshold has a
+/// reason if it separates no foreground.
 [[nodiscard]] Threshold threshold_of(const Histogram& histogram, const ThresholdConfig& config = {});
 
 /// Returns the threshold of a picture, with the class of the foreground. `samples` limits the number of
@@ -70,11 +70,10 @@ struct Threshold {
 class BlockThresholds {
  public:
   /// Computes the threshold of each block from a neighbourhood that grows until two classes can be separated.
-  /// Blocks without such a neighbourhood are interpolated. Returns false, without thresholds, if no block has
-  /// a threshold.
+  /// Blocks without such a neighbourhood are interpolated. Returns false if no block has a threshold.
   bool make(const Image<std::uint8_t>& gray, const ThresholdConfig& config);
-  /// Returns the mean threshold of the blocks in which two classes can be separated. Its `figure` is the
-  /// class that is not at the picture's border.
+  /// Returns the mean threshold of the blocks in which two classes can be separated. The `figure` of the
+  /// result is the class that is not at the picture's border.
   [[nodiscard]] Threshold mean(const Image<std::uint8_t>& gray) const;
   /// Sets `levels` to the threshold at each pixel of row v, rounded up.
   void row(int v, std::vector<std::uint8_t>& levels) const;

@@ -20,8 +20,7 @@ struct CrossSection {
   Eigen::Vector2d normal = {0, 1};
   double half_width = 0;  ///< Half of the tube's width, px.
   std::array<bool, 2> is_seen = {
-      false,
-      false};  ///< Whether the border on the normal's side, and the border on the other side, are visible.
+      false, false};  ///< Visibility of the border on the normal's side, and of the border on the other side.
 
   [[nodiscard]] bool is_whole() const { return is_seen[0] && is_seen[1]; }
 };
@@ -37,8 +36,8 @@ enum class TrackEnd {
 /// Tracks a tube through a picture with a cross-section every one or two pixels. Position, direction and
 /// curvature of each section are predicted by a fading-memory filter, and then measured on both borders. If
 /// one border is invisible, tracking continues with the other border and the known width. If both borders are
-/// invisible, where the tube crosses itself or a hair covers it, tracking continues along the predicted arc
-/// for some widths.
+/// invisible (where the tube crosses itself, or a hair covers it), tracking continues along the predicted arc
+/// for several tube widths.
 template <typename Value>
 class TubeTracker {
  public:
@@ -46,15 +45,15 @@ class TubeTracker {
   /// contrast of a border.
   TubeTracker(const Image<Value>& picture, Figure figure, double level, double contrast, BlurredSteps& steps);
 
-  /// Returns the cross-section near the pixel `center`, with `normal` approximately across the tube; empty if
-  /// the borders are not found.
+  /// Returns the cross-section near the pixel `center`. `normal`: approximate direction across the tube.
+  /// Returns std::nullopt if the borders are not found.
   [[nodiscard]] std::optional<CrossSection> seed(const Eigen::Vector2d& center, const Eigen::Vector2d& normal,
                                                  double half_width);
   /// Tracks the tube from the cross-section `seed`, along the tangent (`way` 1) or against the tangent (`way`
   /// -1). Appends the cross-sections, without the seed, to `sections`.
   TrackEnd follow(const CrossSection& seed, int way, std::vector<CrossSection>& sections);
-  /// Measures a cross-section again whose position is known to a fraction of a pixel. Invisible borders
-  /// remain invisible. `widening` is the change of the half width per pixel along the tangent.
+  /// Measures again a cross-section whose position is already known to a fraction of a pixel. Invisible
+  /// borders remain invisible. `widening` is the change of the half width per pixel along the tangent.
   void refine(CrossSection& section, double widening);
   /// Measures the blur of the borders at the sections with two visible borders.
   void measure_blur(std::span<const CrossSection> sections);
@@ -65,7 +64,8 @@ class TubeTracker {
   [[nodiscard]] double step() const { return step_; }
   /// Returns the standard deviation of the borders' blur, px.
   [[nodiscard]] double blur() const { return blur_; }
-  /// Standard deviation of the picture's noise, estimated at the borders, and contrast of the borders.
+  /// Returns the standard deviation of the picture's noise, estimated at the borders, and the contrast of the
+  /// borders.
   [[nodiscard]] double noise() const { return noise_; }
   [[nodiscard]] double contrast() const { return contrast_; }
   /// Returns the standard deviation of a border's position, px.

@@ -56,7 +56,7 @@ inline std::string kind_of(const std::string& reason) {
                                                  "neither a circle's arc",
                                                  "does not see",
                                                  "correlation is",
-                                                 "at the limit of its commands",
+                                                 "at the limit of its range",
                                                  "ends",
                                                  "no poses of the two cameras explain",
                                                  "are not explained",

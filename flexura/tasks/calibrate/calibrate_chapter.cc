@@ -30,7 +30,7 @@ double power_of_ten(double value) {
 // number of looks repeats.
 LineChart step_chart(const CalibrationRun& run, const char* heading) {
   LineChart chart{.heading = heading,
-                  .x_label = "looks of both cameras",
+                  .x_label = "views of both cameras",
                   .value_label = "size",
                   .x = {0},
                   .is_log = true};
@@ -48,7 +48,7 @@ void add_line(LineChart& chart, const CalibrationRun& run, const std::string& na
 }
 
 ReportFigure offsets(const CalibrationRun& run, std::size_t number) {
-  LineChart chart = step_chart(run, "remaining errors, if commanded after this look");
+  LineChart chart = step_chart(run, "remaining errors if the result were commanded after this view");
   const auto add = [&](const char* name, const auto& value) {
     const auto of = [&](const auto& left) { return left ? value(*left) : nothing; };
     add_line(chart, run, name, of(run.result.nominal_remainder),
@@ -101,14 +101,14 @@ std::string text_of(const CalibrationRun& run) {
   const RigSessionResult& result = run.result;
   const std::size_t pictures = result.pictures[0] + result.pictures[1];
   if (!result.is_done)
-    return fmt::format("Not calibrated: {}. ({} looks, {} pictures.)", result.reason, result.looks, pictures);
+    return fmt::format("Not calibrated: {}. ({} views, {} pictures.)", result.reason, result.looks, pictures);
   const std::string measured =
       run.is_before_etalon
           ? fmt::format("cylinder: {} points of its borders and red lines", result.etalon_points)
           : fmt::format("arm: {} markers and {} points of its axis", result.markers, result.points);
   return fmt::format(
-      "{} looks of both cameras, {} pictures of the {}. +- is a standard deviation; values after the "
-      "calibration and at the start are estimates.",
+      "{} views by both cameras, {} pictures of the {}. +- is a standard deviation. The values at the start "
+      "and after the calibration are estimates.",
       result.looks, pictures, measured);
 }
 
@@ -118,7 +118,7 @@ std::vector<std::string> unknowns_of(const CalibrationRun& run) {
   points.reserve(run.result.observability.unobservable.size());
   for (const UnobservableDirection& blind : run.result.observability.unobservable)
     points.push_back(
-        fmt::format("{:.0f} % of the prior uncertainty is left: {}", 100 * blind.share, blind.words));
+        fmt::format("{:.0f} % of the prior standard deviation remains: {}", 100 * blind.share, blind.words));
   return points;
 }
 

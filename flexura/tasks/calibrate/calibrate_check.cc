@@ -37,42 +37,44 @@ void check_etalon(const CalibrateTask& task, const StandConfig& stand, const std
     reader.problem_at(path, "needs the calibration cylinder: expected [stand.etalon]");
     return;
   }
-  if (stand.arm) reader.problem_at(path, "needs the cylinder alone: expected stand.arm = false");
+  if (stand.arm) reader.problem_at(path, "needs the cylinder without the arm: expected stand.arm = false");
   constexpr double upright = 0.01;  // In m, for half a height of 1 m.
   EtalonConfig unit = *stand.etalon;
   unit.position = {0, 0, 0}, unit.height = 2;
   if ((EtalonFigure(unit).middle() - Eigen::Vector3d::UnitY()).norm() > upright)
-    reader.problem_at(path, "needs an upright cylinder: expected a stand.etalon.rotation about Y");
+    reader.problem_at(path, "needs an upright cylinder: expected a stand.etalon.rotation about Y only");
   if (!is_loop(task)) {
     if (!task.pose.empty() || task.zooms != CalibrateTask{}.zooms)
-      reader.problem_at(path, "has no pose and no zooms with this method: expected none of these keys");
+      reader.problem_at(
+          path, "uses no poses and no zooms with this method: expected neither key pose nor key zooms");
   } else if (!task.pose.empty() || task.target || !task.stages) {
-    reader.problem_at(
-        path, "has no pose, no target and moves stages with this method: expected none of these keys");
+    reader.problem_at(path,
+                      "uses no poses, has no target and moves stages with this method: expected none of the "
+                      "keys pose, target and stages");
   }
 }
 
 void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::string& path, Reader& reader) {
   if (arm.mechanics != ArmMechanics::kinematic)
     reader.problem_at(path + ".method",
-                      "needs an arm of arcs, but an elastic arm sags: expected bundle, or the elastic arm "
-                      "under [truth.arm]");
+                      "needs a model of arcs, but an elastic arm sags: expected the method bundle, or the "
+                      "elastic arm only in [truth.arm]");
   constexpr std::size_t arcs = 4;
   if (calibration_poses(task, arm.arm()).size() < arcs)
-    reader.problem_at(
-        path, fmt::format("needs an arm that bends into arcs of {:.0f} deg in XOY and in ZOY: expected a "
-                          "spatial and upright arm, or a smaller loop.arc",
-                          arc_bend(task) / degree));
+    reader.problem_at(path, fmt::format("needs an arm that can bend into arcs of {:.0f} deg in XOY and in "
+                                        "ZOY: expected a spatial, upright arm, or a smaller loop.arc",
+                                        arc_bend(task) / degree));
   if (!task.pose.empty() || task.target || !task.stages)
-    reader.problem_at(
-        path, "has no pose, no target and moves stages with this method: expected none of these keys");
+    reader.problem_at(path,
+                      "uses no poses, has no target and moves stages with this method: expected none of the "
+                      "keys pose, target and stages");
 }
 
 // Refuses keys of other methods, which would have no effect.
 void check_idle_keys(const CalibrateTask& task, const std::string& path, Reader& reader) {
   const auto refuse = [&](const char* key, bool is_given, const char* whose) {
     if (is_given)
-      reader.problem_at(path + key, fmt::format("applies only to {}: expected no such key", whose));
+      reader.problem_at(path + key, fmt::format("applies only to {}: expected this key to be absent", whose));
   };
   const CalibrateTask usual;
   const CalibrateLoopConfig &loop = task.loop, &loop_usual = usual.loop;
@@ -100,14 +102,16 @@ void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
   const bool is_bundle = !is_loop(task);
   if (!is_bundle && task.required_std != CalibrateRequiredStd{})
     reader.problem_at(path + ".required_std",
-                      "applies only to the methods bundle and bundle-etalon: expected no such key");
+                      "applies only to the methods bundle and bundle-etalon: expected this key to be absent");
   if (!is_bundle && task.method != CalibrateMethod::arcs && task.camera_prior != CalibrateCameraPrior{})
-    reader.problem_at(path + ".camera_prior",
-                      "applies only to the methods bundle, bundle-etalon and arcs: expected no such key");
+    reader.problem_at(
+        path + ".camera_prior",
+        "applies only to the methods bundle, bundle-etalon and arcs: expected this key to be absent");
   if (task.method != CalibrateMethod::bundle && task.arm_prior != CalibrateArmPrior{})
-    reader.problem_at(path + ".arm_prior", "applies only to the method bundle: expected no such key");
+    reader.problem_at(path + ".arm_prior",
+                      "applies only to the method bundle: expected this key to be absent");
   if (is_bundle && task.loop != CalibrateLoopConfig{})
-    reader.problem_at(path + ".loop", "applies only to the paper's methods: expected no such key");
+    reader.problem_at(path + ".loop", "applies only to the paper's methods: expected this key to be absent");
   if (!is_bundle) check_idle_keys(task, path, reader);
   if (task.method == CalibrateMethod::bundle || task.method == CalibrateMethod::arcs)
     check_markers(arm, path, reader);
@@ -116,7 +120,7 @@ void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
   if (!task.save.empty() && !is_plain_file(task.save))
     reader.problem_at(
         path + ".save",
-        fmt::format("{}: expected a file's name of letters, digits, -, _ and ., ending in .toml",
+        fmt::format("{}: expected a file name made of letters, digits, -, _ and ., ending in .toml",
                     Node{task.save, {}}.brief()));
 }
 

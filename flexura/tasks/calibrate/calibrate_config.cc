@@ -77,7 +77,7 @@ const std::vector<std::string>& names_of(const CalibrateMethod*) {
 const Table<CalibrateRequiredStd>& fields_of(const CalibrateRequiredStd*) {
   static const auto table =
       Table<CalibrateRequiredStd>(
-          "required_std", "Standard deviations of the calibrated rig at which no more pictures are taken.")
+          "required_std", "Standard deviations of the calibrated rig below which no more pictures are taken.")
           .field("angle", &CalibrateRequiredStd::angle,
                  {.meaning = "Standard deviation of the angle between the optical axes.",
                   .unit = Unit::radian,
@@ -85,7 +85,8 @@ const Table<CalibrateRequiredStd>& fields_of(const CalibrateRequiredStd*) {
           .field("focal", &CalibrateRequiredStd::focal,
                  {.meaning = "Relative standard deviation of each focal length.", .range = above_up_to(0, 1)})
           .field("zoom_ratio", &CalibrateRequiredStd::zoom_ratio,
-                 {.meaning = "Relative standard deviation of the ratio of the arm's sizes in the two images.",
+                 {.meaning =
+                      "Relative standard deviation of the ratio of the arm's image sizes in the two cameras.",
                   .range = above_up_to(0, 1)});
   return table;
 }
@@ -106,15 +107,14 @@ const Table<CalibrateCameraPrior>& fields_of(const CalibrateCameraPrior*) {
           .field("principal_point_std", &CalibrateCameraPrior::principal_point_std,
                  {.meaning = "Standard deviation of the principal point along each axis, px.",
                   .range = between(0, 1000)})
-          .field(
-              "zero_std", &CalibrateCameraPrior::zero_std,
-              {.meaning =
-                   "Standard deviation of a head's zero offsets. For pan it counts only where a stage moves.",
-               .unit = Unit::radian,
-               .range = between(0, 1)})
+          .field("zero_std", &CalibrateCameraPrior::zero_std,
+                 {.meaning = "Standard deviation of a head's zero offsets. For pan, it has an effect only if "
+                             "the camera's stage moves.",
+                  .unit = Unit::radian,
+                  .range = between(0, 1)})
           .field("exact_heads", &CalibrateCameraPrior::exact_heads,
-                 {.meaning = "Whether heads are exactly at their counted positions, not anywhere within half "
-                             "a step of them."})
+                 {.meaning = "Whether heads are exactly at their reported positions. Otherwise a head may be "
+                             "half a motor step away from its reported position."})
           .renamed("rotation", "rotation_std")
           .renamed("distance", "position_std")
           .renamed("focal", "focal_std")
@@ -130,17 +130,18 @@ const Table<CalibrateArmPrior>& fields_of(const CalibrateArmPrior*) {
                  {.meaning = "Relative standard deviation of each section's length. The lengths are the "
                              "calibration's only measure of distances.",
                   .range = between(0, 0.1)})
-          .field("response_std", &CalibrateArmPrior::response_std,
-                 {.meaning = "Standard deviation of the unknown share of each section's commanded bend by "
-                             "which the bend of any section differs from the model, in every pose.",
-                  .range = between(0, 1),
-                  .default_text = "0.2 with `arm.model = \"static\"` or `\"dynamic\"`, otherwise 0"})
           .field(
-              "pose_response_std", &CalibrateArmPrior::pose_response_std,
-              {.meaning = "Standard deviation of an additional share of that kind, which differs from pose "
-                          "to pose.",
+              "response_std", &CalibrateArmPrior::response_std,
+              {.meaning =
+                   "Standard deviation of coefficients of model errors that are equal in all poses. A bend "
+                   "of 1 rad of any section changes the bend of any section by such a coefficient, rad.",
                .range = between(0, 1),
-               .default_text = "a quarter of response_std"});
+               .default_text = "0.2 with `arm.model = \"static\"` or `\"dynamic\"`, otherwise 0"})
+          .field("pose_response_std", &CalibrateArmPrior::pose_response_std,
+                 {.meaning = "Standard deviation of additional coefficients of this kind, which differ from "
+                             "pose to pose.",
+                  .range = between(0, 1),
+                  .default_text = "a quarter of response_std"});
   return table;
 }
 
@@ -148,14 +149,14 @@ const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*) {
   static const auto table =
       Table<CalibrateLoopConfig>("loop", "Parameters of the paper's iterative methods.")
           .field("accepted", &CalibrateLoopConfig::accepted,
-                 {.meaning = "Tolerance of every offset in a picture, px.",
+                 {.meaning = "Tolerance of each offset measured in a picture, px.",
                   .range = above_up_to(0, 1000),
                   .default_text = "0.05 for etalon, 0.5 for arcs, 3 for -paper methods"})
-          .field(
-              "zoom_accepted", &CalibrateLoopConfig::zoom_accepted,
-              {.meaning = "Relative tolerance of the difference between the target's sizes in both images.",
-               .range = above_up_to(0, 1),
-               .default_text = "0.001; 0.01 for -paper methods"})
+          .field("zoom_accepted", &CalibrateLoopConfig::zoom_accepted,
+                 {.meaning =
+                      "Tolerance of the relative difference between the target's sizes in the two images.",
+                  .range = above_up_to(0, 1),
+                  .default_text = "0.001; 0.01 for -paper methods"})
           .field("turn", &CalibrateLoopConfig::turn,
                  {.meaning = "Fixed rotation step of a head, for etalon-paper.",
                   .unit = Unit::radian,
@@ -176,51 +177,52 @@ const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*) {
 
 const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
   static const auto table =
-      Table<CalibrateTask>("calibrate",
-                           "Calibrates two cameras, then points them at the arm along orthogonal axes with "
-                           "equal zoom. The arm takes several poses and returns to its shape in between; "
-                           "heads, stages and zooms move too. The duration depends on the progress.")
+      Table<CalibrateTask>(
+          "calibrate",
+          "Calibrates two cameras, then points them at the arm along orthogonal axes with "
+          "equal zoom. The arm moves to several poses and returns to its first shape in between. Heads, "
+          "stages and zooms move too. The duration depends on how fast the estimate becomes accurate.")
           .field("name", &CalibrateTask::name,
                  {.meaning = "Name of the task in results.", .default_text = "its kind"})
-          .field(
-              "method", &CalibrateTask::method,
-              {.meaning =
-                   "Calibration method. `bundle`: least squares over all parameters, from pictures of the "
-                   "arm. `bundle-etalon`: least squares from pictures of the calibration cylinder. `etalon`: "
-                   "the paper's loop with the cylinder, corrected. `arcs`: the paper's loop with arcs of the "
-                   "arm in two planes, corrected. `etalon-paper`, `arcs-paper`: the loops as the paper "
-                   "prints them."})
+          .field("method", &CalibrateTask::method,
+                 {.meaning =
+                      "Calibration method. `bundle`: least squares over all parameters, from pictures of the "
+                      "arm. `bundle-etalon`: least squares from pictures of the calibration cylinder. "
+                      "`etalon`: the paper's iterative method with the cylinder, with corrections. `arcs`: "
+                      "the paper's iterative method with arcs of the arm in two planes, with corrections. "
+                      "`etalon-paper`, `arcs-paper`: these methods exactly as printed in the paper."})
           .field("cameras", &CalibrateTask::cameras,
                  {.meaning = "Names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
           .field("pose", &CalibrateTask::pose,
                  {.meaning = "Shapes of the arm in the pictures, as `pose = [{ bends = ... }, ...]`.",
                   .count = {1, 100},
-                  .default_text = "six, with every part of the arm bent to every side"})
+                  .default_text = "six poses in which every part of the arm bends to every side"})
           .field("images", &CalibrateTask::images,
-                 {.meaning = "Largest number of pictures per camera, without those of a search. With bundle "
-                             "and bundle-etalon the last picture is for verification.",
+                 {.meaning = "Largest number of pictures per camera, not counting a search for the arm. With "
+                             "bundle and bundle-etalon, the last picture verifies the result.",
                   .range = between(3, image_limit),
-                  .default_text = "12 for both bundles, 60 for etalon and arcs, 400 for -paper methods"})
+                  .default_text =
+                      "12 for bundle and bundle-etalon, 60 for etalon and arcs, 400 for -paper methods"})
           .field("required_std", &CalibrateTask::required_std,
-                 {.meaning = "Standard deviations at which the calibration stops."})
+                 {.meaning = "Standard deviations below which the calibration takes no more pictures."})
           .field("camera_prior", &CalibrateTask::camera_prior,
                  {.meaning = "Prior standard deviations of the file's camera models."})
           .field("arm_prior", &CalibrateTask::arm_prior,
                  {.meaning = "Prior standard deviations of the file's model of the arm, for bundle."})
           .field("loop", &CalibrateTask::loop, {.meaning = "Parameters of the paper's iterative methods."})
           .field("target", &CalibrateTask::target,
-                 {.meaning = "Point at which both cameras look in the end.",
+                 {.meaning = "Point at which both cameras look after the calibration.",
                   .unit = Unit::metre,
                   .range = between(-1e6, 1e6),
                   .default_text = "the middle of the arm in its first pose"})
           .field("stages", &CalibrateTask::stages,
                  {.meaning = "Whether stages may move, within their travel."})
           .field("zooms", &CalibrateTask::zooms,
-                 {.meaning = "Focal lengths for the pictures, as factors on the initial one.",
+                 {.meaning = "Focal lengths for the pictures, as factors on the initial focal length.",
                   .range = between(0.1, 100),
                   .count = {1, 10}})
           .field("move_duration", &CalibrateTask::move_duration,
-                 {.meaning = "Duration of the arm's motion to a pose, or back.",
+                 {.meaning = "Duration of the arm's motion to a pose or back.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest)})
           .field("pause", &CalibrateTask::pause,
@@ -228,17 +230,19 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                   .unit = Unit::second,
                   .range = between(0, longest)})
           .field("settle_timeout", &CalibrateTask::settle_timeout,
-                 {.meaning = "Longest duration of a motion. A device that moves longer counts as stuck.",
+                 {.meaning =
+                      "Longest duration of a motion. A device that has not arrived by then counts as stuck.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest)})
           .field("frame_timeout", &CalibrateTask::frame_timeout,
                  {.meaning = "Longest wait for a picture.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest)})
-          .field("save", &CalibrateTask::save,
-                 {.meaning = "Name of a .toml file in this file's folder for the calibrated rig, which "
-                             "experiments can include. An existing rig file is kept under another name.",
-                  .default_text = "none; the results have it as rig.toml"})
+          .field(
+              "save", &CalibrateTask::save,
+              {.meaning = "Name of a .toml file for the calibrated rig, which experiments can include. It is "
+                          "written into this file's folder. An existing file with this name is renamed.",
+               .default_text = "not set; the results folder always has the rig as rig.toml"})
           .renamed("wanted", "required_std")
           .renamed("guess", "camera_prior");
   return table;

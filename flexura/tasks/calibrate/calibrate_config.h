@@ -22,20 +22,21 @@ namespace flexura {
 
 /// Calibration method of a task.
 enum class CalibrateMethod {
-  bundle,  ///< Least squares over pictures of the arm, for camera poses, lenses and the arm's own errors
-           ///< (calibrate/rig_session.h).
-  bundle_etalon,  ///< Least squares over pictures of the calibration cylinder.
-  etalon,         ///< The paper's loop with the cylinder, corrected (calibrate/loop_session.h).
-  etalon_paper,   ///< The loop with the cylinder, as the paper prints it.
-  arcs,           ///< The paper's loop with arcs of the arm and the simulator, corrected.
-  arcs_paper,     ///< The loop with arcs and the simulator, as the paper prints it.
+  /// Least squares fit of camera poses, lenses and the arm's errors to pictures of the arm
+  /// (calibrate/rig_session.h).
+  bundle,
+  bundle_etalon,  ///< Least squares fit to pictures of the calibration cylinder.
+  etalon,  ///< The paper's iterative method with the cylinder, with corrections (calibrate/loop_session.h).
+  etalon_paper,  ///< The iterative method with the cylinder, exactly as printed in the paper.
+  arcs,          ///< The paper's iterative method with arcs of the arm and the simulator, with corrections.
+  arcs_paper,    ///< The iterative method with arcs and the simulator, exactly as printed in the paper.
 };
 
-/// Standard deviations of the calibrated rig at which no more pictures are taken.
+/// Standard deviations of the calibrated rig below which no more pictures are taken.
 struct CalibrateRequiredStd {
-  double angle = RigSigmas{}.angle;            ///< Angle between the axes, rad.
+  double angle = RigSigmas{}.angle;            ///< Angle between the optical axes, rad.
   double focal = RigSigmas{}.focal[0];         ///< Focal lengths, relative.
-  double zoom_ratio = RigSigmas{}.zoom_ratio;  ///< Ratio of the arm's sizes in the images, relative.
+  double zoom_ratio = RigSigmas{}.zoom_ratio;  ///< Ratio of the arm's sizes in the two images, relative.
   bool operator==(const CalibrateRequiredStd&) const = default;
 };
 
@@ -43,13 +44,14 @@ struct CalibrateRequiredStd {
 struct CalibrateCameraPrior {
   /// Standard deviation of a mount's orientation about each axis, rad.
   double rotation_std = CameraPrior{}.rotation;
-  /// Standard deviation of a mount's position along each axis, relative to its distance.
+  /// Standard deviation of a mount's position along each axis, as a fraction of its distance from the arm's
+  /// base or the calibration cylinder.
   double position_std = 0.2;
   double focal_std = CameraPrior{}.focal;  ///< Relative standard deviation of the focal length.
   /// Standard deviation of the principal point, px.
   double principal_point_std = CameraPrior{}.principal_point;
   double zero_std = CameraPrior{}.tilt_zero;  ///< Standard deviation of a head's zero offsets, rad.
-  bool exact_heads = false;                   ///< Whether heads are exactly at their counted positions.
+  bool exact_heads = false;                   ///< Whether heads are exactly at their reported positions.
   bool operator==(const CalibrateCameraPrior&) const = default;
 };
 
@@ -57,9 +59,9 @@ struct CalibrateCameraPrior {
 /// "An arm unlike its model").
 struct CalibrateArmPrior {
   double length_std = ArmPrior{}.length;  ///< Relative standard deviation of each section's length.
-  /// ArmPrior::response; missing: 0.2 for an arm whose model is an elastic rod, otherwise 0.
+  /// ArmPrior::response; default: 0.2 if the arm's model is an elastic rod, otherwise 0.
   std::optional<double> response_std = {};
-  /// ArmPrior::pose_response; missing: a quarter of response_std.
+  /// ArmPrior::pose_response; default: a quarter of response_std.
   std::optional<double> pose_response_std = {};
   bool operator==(const CalibrateArmPrior&) const = default;
 };
@@ -75,20 +77,22 @@ struct CalibrateLoopConfig {
   bool operator==(const CalibrateLoopConfig&) const = default;
 };
 
-/// `kind = "calibrate"`: calibrates two cameras with pictures, then moves them to the target configuration.
+/// `kind = "calibrate"`: calibrates two cameras from their pictures. Then points them along orthogonal axes
+/// at the arm, with equal zoom.
 struct CalibrateTask {
   std::string name;
   CalibrateMethod method = CalibrateMethod::bundle;
-  std::vector<std::string> cameras;    ///< Two names; empty: the first two cameras.
+  std::vector<std::string> cameras;    ///< Names of two cameras; empty: the first two cameras.
   std::vector<ShapeConfig> pose;       ///< Shapes of the arm in the pictures; empty: default poses.
   std::optional<std::int64_t> images;  ///< Largest number of pictures per camera.
   CalibrateRequiredStd required_std;
   CalibrateCameraPrior camera_prior;
   CalibrateArmPrior arm_prior;
   CalibrateLoopConfig loop;
-  std::optional<std::array<double, 3>> target;      ///< Point at which the calibrated cameras look, in W, m.
+  /// Point at which the calibrated cameras look, in the world frame W, m.
+  std::optional<std::array<double, 3>> target;
   bool stages = RigSessionConfig{}.may_use_stages;  ///< Whether stages may move, within their travel.
-  /// Focal lengths for the pictures, as factors on the initial one.
+  /// Focal lengths for the pictures, as factors on the initial focal length.
   std::vector<double> zooms = RigSessionConfig{}.zooms;
   double move_duration = RigSessionConfig{}.move_duration;  ///< Duration of a move of the arm, s.
   double pause = 0;  ///< Time to wait after each motion of the arm, until it stops swinging, s.
@@ -104,9 +108,9 @@ const Table<CalibrateArmPrior>& fields_of(const CalibrateArmPrior*);
 const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*);
 const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 
-/// Returns whether a task's method is one of the paper's loops.
+/// Returns whether a task uses one of the paper's iterative methods, corrected or not.
 [[nodiscard]] bool is_loop(const CalibrateTask& task);
-/// Returns whether the method is a loop as the paper prints it, not a corrected one.
+/// Returns whether the method is exactly as printed in the paper, without corrections.
 [[nodiscard]] bool is_as_printed(const CalibrateTask& task);
 /// Returns whether the method uses the calibration cylinder.
 [[nodiscard]] bool is_before_etalon(const CalibrateTask& task);
@@ -130,12 +134,12 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 [[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& nominal,
                                      const StandConfig& stand);
 
-/// Returns the loop configuration for a task with one of the paper's methods, without the simulator's
-/// pictures.
+/// Returns the configuration of a LoopSession for a task with one of the paper's methods. It lacks the
+/// function that renders the simulator's pictures.
 [[nodiscard]] LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
                                      const std::vector<CameraConfig>& cameras, const StandConfig& stand);
 
-/// Reports why the calibration at `path` ("task[2]") is not possible with this setup.
+/// Reports as errors why the calibration at `path` ("task[2]") is not possible with this setup.
 void check_keys(const CalibrateTask& task, const Setup& setup, const std::string& path, Reader& reader);
 /// Returns the runner of a calibration. `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const CalibrateTask& task, const Setup& setup,

@@ -44,7 +44,7 @@ TaskOutcome outcome_of_bundle(const CalibrationRun& run, TaskOutcome outcome) {
   for (const Accuracy& other : others) outcome.text += ", " + other.text();
   outcome.text += outcome.is_reached ? ": reached" : ": not reached";
   outcome.brief = angle.text() + (outcome.is_reached ? ": reached" : ": not reached");
-  if (run.truth) outcome.text += fmt::format("; in truth {}", degrees_between_axes(run.truth->angle));
+  if (run.truth) outcome.text += fmt::format("; true value: {}", degrees_between_axes(run.truth->angle));
   outcome.size = is.angle / required.angle;
   outcome.size_text = angle.text();
   return outcome;
@@ -58,11 +58,13 @@ TaskOutcome outcome_of_loop(const CalibrationRun& run, TaskOutcome outcome) {
   outcome.text = fmt::format("offsets within {:.3g} px after {} pictures: ", run.accepted,
                              loop.pictures[0] + loop.pictures[1]);
   outcome.text += outcome.is_reached ? "reached"
-                                     : fmt::format("not reached, {} is {:.3g} off", missed->quantity,
-                                                   std::abs(missed->last->offset));
-  if (loop.angle) outcome.text += fmt::format("; axes {} degrees as seen", degrees_between_axes(*loop.angle));
+                                     : fmt::format("not reached, the offset of {} is {:.3g}",
+                                                   missed->quantity, std::abs(missed->last->offset));
+  if (loop.angle)
+    outcome.text +=
+        fmt::format("; observed angle between the axes: {} degrees", degrees_between_axes(*loop.angle));
   if (run.truth)
-    outcome.text += fmt::format("; axes {} degrees in truth", degrees_between_axes(run.truth->angle));
+    outcome.text += fmt::format("; true angle: {} degrees", degrees_between_axes(run.truth->angle));
   return outcome;
 }
 

@@ -221,7 +221,7 @@ void save(const std::filesystem::path& file, const std::string& text) {
 
 const Table<FoundRigFile>& fields_of(const FoundRigFile*) {
   static const auto table =
-      Table<FoundRigFile>("rig", "A rig as it was found, for experiments to include.")
+      Table<FoundRigFile>("rig", "A calibrated rig that experiments can include.")
           .field("arm", &FoundRigFile::arm, {.meaning = "The arm.", .required = true})
           .field("camera", &FoundRigFile::camera, {.meaning = "The cameras.", .required = true});
   return table;
@@ -249,11 +249,11 @@ std::string loop_rig_toml(const Setup& setup, const CalibrationRun& run) {
   FoundRigFile file{setup.arm, run.found().cameras};
   start_at(result.stances, file);
   return fmt::format(
-             "# The rig of the experiment's file. The cameras start at the positions that a calibration with "
-             "{} pictures found{}.\n",
+             "# The rig of the experiment's file. The cameras start at the positions found by a calibration "
+             "with {} pictures{}.\n",
              result.pictures[0] + result.pictures[1],
              result.principal_point[0] || result.principal_point[1]
-                 ? ", and the principal points are the measured ones"
+                 ? ", and have the measured principal points"
                  : "") +
          file_text(file);
 }
@@ -293,8 +293,8 @@ std::string found_rig_toml(const Setup& setup, const CalibrationRun& run) {
   start_at(run.result.desired.stances, file);
   const RigSigmas& sigmas = run.result.steps.back().sigmas;
   return fmt::format(
-             "# Found by a calibration with {} pictures: angle between the axes known within {:.3g} deg, "
-             "focal lengths within {:.2g} %\n# and {:.2g} % (standard deviations).\n",
+             "# Result of a calibration with {} pictures. Standard deviations: {:.3g} deg for the angle "
+             "between the axes, {:.2g} %\n# and {:.2g} % for the focal lengths.\n",
              run.result.pictures[0] + run.result.pictures[1], sigmas.angle / degree, 100 * sigmas.focal[0],
              100 * sigmas.focal[1]) +
          file_text(file);

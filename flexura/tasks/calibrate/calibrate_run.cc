@@ -97,7 +97,7 @@ class LoggedSession : public RigSessionWatcher {
     const double sigma = step.sigmas.angle / degree;
     std::string what = step.reason;
     if (step.is_found)
-      what = sigma < most ? fmt::format("angle between the axes known within {:.4f} deg", sigma)
+      what = sigma < most ? fmt::format("angle between the axes: standard deviation {:.4f} deg", sigma)
                           : "angle between the axes not known yet";
     log_.event(step.time, Recorder::Level::info, run_.name,
                fmt::format("after {} looks: {}", step.looks, what));

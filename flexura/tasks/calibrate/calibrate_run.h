@@ -21,7 +21,8 @@ struct CommandedArc {
   IdealArc ideal;
   std::vector<double>
       rotations;  ///< Rotations of the bend directions about the axes of the sections' bases, rad.
-  std::optional<std::vector<std::int64_t>> positions;  ///< Motor positions, microsteps; arms with drives.
+  /// Motor positions, microsteps; missing for arms without drives.
+  std::optional<std::vector<std::int64_t>> positions;
 };
 
 /// Result of a task of kind "calibrate".
@@ -30,25 +31,26 @@ struct CalibrationRun {
   bool is_before_etalon =
       false;  ///< Whether the calibration used the calibration cylinder instead of the arm.
   std::array<std::string, 2> cameras;  ///< Names of the cameras.
-  RigSigmas required = {};             ///< Required standard deviations, of the method "bundle".
-  double accepted = 0;                 ///< Tolerance of offsets in pictures, px, of the paper's methods.
+  RigSigmas required = {};             ///< Required standard deviations, for the method "bundle".
+  double accepted = 0;                 ///< Tolerance of offsets in pictures, px, for the paper's methods.
   RigModel nominal;                    ///< Model before the calibration.
   RigSessionResult result;             ///< Result of the method "bundle".
-  std::optional<LoopResult> loop;      ///< Result of one of the paper's methods, which replaces `result`.
-  std::vector<CommandedArc> arcs;      ///< Arcs of the methods with arcs, one per camera.
-  MotionPtr motion;                    ///< Commanded motion of the arm, from the task's start.
-  /// True remaining errors at the cameras' final positions, unknown to the session; only for simulated rigs.
+  std::optional<LoopResult> loop;  ///< Result if the method is one of the paper's; `result` is then empty.
+  std::vector<CommandedArc> arcs;  ///< Arcs of the methods "arcs" and "arcs-paper", one per camera.
+  MotionPtr motion;                ///< Commanded motion of the arm, from the task's start.
+  /// True remaining errors at the cameras' final positions. Only for simulated rigs; the session does not
+  /// know them.
   std::optional<RigRemainder> truth;
   std::optional<std::array<double, 2>> true_focal =
       {};  ///< True focal lengths at the cameras' final positions, px; only for simulated rigs.
 
-  /// Returns the model of the rig after the calibration: the nominal model with the results.
+  /// Returns the model of the rig after the calibration: the nominal model updated with the results.
   [[nodiscard]] RigModel found() const;
   [[nodiscard]] bool is_done() const { return loop ? loop->is_done : result.is_done; }
   [[nodiscard]] const std::string& reason() const { return loop ? loop->reason : result.reason; }
 };
 
-/// Returns the image of the arm's axis for the ideal camera in a picture, from base to tip, px; empty for
+/// Returns the image of the arm's axis that the ideal camera would observe, from base to tip, px. Empty for
 /// methods without arcs.
 [[nodiscard]] std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run,
                                                       const CameraObservation& observed);

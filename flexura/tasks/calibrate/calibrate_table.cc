@@ -72,7 +72,7 @@ ChapterTable table_of_bundle(const CalibrationRun& run) {
   for (std::size_t i = 0; i < 2; ++i) add_focal(run, i, table);
   for (std::size_t i = 0; i < 2; ++i)
     add_remainder(
-        run, fmt::format("axis of {} passes the target by (mm)", run.cameras[i]), 2,
+        run, fmt::format("distance of the axis of {} from the target (mm)", run.cameras[i]), 2,
         [i](const RigRemainder& left) { return 1e3 * left.aim[i].norm(); }, table);
   for (std::size_t i = 0; i < 2; ++i)
     add_remainder(
@@ -100,7 +100,7 @@ ChapterTable table_of_loop(const CalibrationRun& run) {
       [](const RigRemainder& left) { return 90 + left.angle / degree; });
   add("zoom ratio", 4, result.zoom_ratio, [](const RigRemainder& left) { return left.zoom_ratio; });
   for (std::size_t i = 0; i < 2; ++i)
-    add(fmt::format("axis of {} passes the target by (mm)", run.cameras[i]), 2, std::nullopt,
+    add(fmt::format("distance of the axis of {} from the target (mm)", run.cameras[i]), 2, std::nullopt,
         [i](const RigRemainder& left) { return 1e3 * left.aim[i].norm(); });
   for (std::size_t i = 0; i < 2; ++i)
     add(fmt::format("roll of {}, which no head can correct (deg)", run.cameras[i]), 2,

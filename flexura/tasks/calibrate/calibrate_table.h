@@ -22,8 +22,9 @@ struct LoopOffset {
 /// Returns the offsets of a calibration by one of the paper's methods, in the order of their first decisions.
 [[nodiscard]] std::vector<LoopOffset> loop_offsets(const CalibrationRun& run);
 
-/// Returns the table of a successful calibration: a row per quantity. The row has the quantity's value at the
-/// start, after the calibration and in the simulated truth, its tolerance, and whether the tolerance is met.
+/// Returns the table of a successful calibration: one row per quantity. A row has the value at the start, the
+/// value after the calibration, the true value in the simulation, the tolerance, and whether the tolerance is
+/// met.
 [[nodiscard]] ChapterTable calibration_table(const CalibrationRun& run);
 
 }  // namespace flexura

@@ -14,7 +14,7 @@ const Table<CalibrationMoveMessage>& fields_of(const CalibrationMoveMessage*) {
           .field("duration", &M::duration, {.meaning = "For the arm: duration of the motion, s."})
           .field("pan", &M::pan, {.meaning = "For a camera: pan, rad, to its left."})
           .field("tilt", &M::tilt, {.meaning = "For a camera: tilt, rad, upwards."})
-          .field("zoom", &M::zoom, {.meaning = "For a camera: zoom, as a ratio or a motor count."})
+          .field("zoom", &M::zoom, {.meaning = "For a camera: zoom, as a ratio or as a motor position."})
           .field("stage", &M::stage, {.meaning = "For a camera: offset of the stage, m."});
   return table;
 }
@@ -73,7 +73,7 @@ const Table<CalibrationObservationMessage>& fields_of(const CalibrationObservati
       Table<M>("flexura.CalibrationObservation", "Measurements of a calibration in one picture.")
           .field("time", &M::time, {.meaning = "Middle of the exposure, since the experiment's start, s."})
           .field("look", &M::look,
-                 {.meaning = "Number of the look, from 1; 0 during the search for the arm."})
+                 {.meaning = "Number of the view, from 1; 0 during the search for the arm."})
           .field("camera", &M::camera, {.meaning = "Name of the camera."})
           .field("frame", &M::frame, {.meaning = "Number of the frame."})
           .field("pan", &M::pan, {.meaning = "Measured pan of the head, rad."})
@@ -98,23 +98,25 @@ const Table<CalibrationObservationMessage>& fields_of(const CalibrationObservati
 const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMessage*) {
   using M = CalibrationDecisionMessage;
   static const auto table =
-      Table<M>("flexura.CalibrationDecision", "Estimate of a calibration after a look, and its next action.")
+      Table<M>("flexura.CalibrationDecision",
+               "Estimate of a calibration after a view by both cameras, and the calibration's next action.")
           .field("time", &M::time, {.meaning = "Time since the experiment's start, s."})
-          .field("looks", &M::looks, {.meaning = "Number of looks so far."})
-          .field("found", &M::found, {.meaning = "Whether a rig explains the observations."})
-          .field("reason", &M::reason, {.meaning = "Why there is no rig."})
+          .field("looks", &M::looks, {.meaning = "Number of views so far."})
+          .field("found", &M::found,
+                 {.meaning = "Whether a rig model was found that explains the observations."})
+          .field("reason", &M::reason, {.meaning = "Why no rig model was found."})
           .field("rms", &M::rms, {.meaning = "Root mean square of the residuals, in standard deviations."})
           .field("outliers", &M::outliers,
                  {.meaning = "Number of observations that were excluded as outliers."})
           .field("angle", &M::angle,
-                 {.meaning =
-                      "Angle between the optical axes at the positions that would be commanded now, rad."})
+                 {.meaning = "Angle between the optical axes if the result were commanded now, rad."})
           .field("angle_sigma", &M::angle_sigma, {.meaning = "Standard deviation of this angle, rad."})
           .field("focal", &M::focal, {.meaning = "Focal lengths of both cameras at the zoom ratio 1, px."})
           .field("focal_sigma", &M::focal_sigma,
                  {.meaning = "Relative standard deviations of the focal lengths."})
-          .field("zoom_ratio_sigma", &M::zoom_ratio_sigma,
-                 {.meaning = "Relative standard deviation of the ratio of the arm's sizes in both pictures."})
+          .field(
+              "zoom_ratio_sigma", &M::zoom_ratio_sigma,
+              {.meaning = "Relative standard deviation of the ratio of the arm's sizes in the two pictures."})
           .field("next", &M::next, {.meaning = "Next action, with its reason."})
           .field("camera", &M::camera, {.meaning = "For the paper's methods: the camera that moves."})
           .field("step", &M::step, {.meaning = "For the paper's methods: the current step."})

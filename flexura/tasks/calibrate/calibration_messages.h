@@ -21,20 +21,21 @@ struct CalibrationMoveMessage {
   std::optional<std::vector<std::array<double, 2>>> bends;  ///< Commanded bends of the arm, rad.
   std::optional<double> duration;                           ///< Duration of the arm's motion, s.
   std::optional<double> pan, tilt;                          ///< Commanded pan and tilt of a camera, rad.
-  std::optional<double> zoom;                               ///< Commanded position in the lens's table.
-  std::optional<std::array<double, 3>> stage;               ///< Commanded stage position, m.
+  std::optional<double> zoom;                  ///< Commanded zoom: a position in the lens's zoom table.
+  std::optional<std::array<double, 3>> stage;  ///< Commanded stage position, m.
 };
 
 /// flexura.CalibrationArc, on /calibration/arcs: an ideal arc for a camera, computed with the simulator.
 struct CalibrationArcMessage {
-  double time = 0;                                     ///< In s.
-  std::string camera;                                  ///< Name of the camera.
-  std::string plane;                                   ///< "XOY" or "ZOY".
-  std::vector<std::array<double, 2>> bends;            ///< Bends of the arm, rad.
-  std::vector<double> rotations;                       ///< Rotations of the bends, rad.
-  std::optional<std::vector<std::int64_t>> positions;  ///< Motor positions, microsteps; arms with drives.
-  PoseMessage pose;                                    ///< Pose of the ideal camera.
-  double focal = 0;                                    ///< Focal length of the ideal camera, px.
+  double time = 0;                           ///< In s.
+  std::string camera;                        ///< Name of the camera.
+  std::string plane;                         ///< "XOY" or "ZOY".
+  std::vector<std::array<double, 2>> bends;  ///< Bends of the arm, rad.
+  std::vector<double> rotations;             ///< Rotations of the bends, rad.
+  /// Motor positions, microsteps; missing for arms without drives.
+  std::optional<std::vector<std::int64_t>> positions;
+  PoseMessage pose;  ///< Pose of the ideal camera.
+  double focal = 0;  ///< Focal length of the ideal camera, px.
 };
 
 /// A marker as measured in a picture.
@@ -44,7 +45,7 @@ struct MarkerMessage {
   double sigma = 0;     ///< Standard deviation in each direction, px.
 };
 
-/// Any other number measured in a picture.
+/// Another number measured in a picture.
 struct SeenValueMessage {
   std::string name;  ///< Name with the unit.
   double value = 0;
@@ -60,40 +61,42 @@ struct CircleMessage {
 /// flexura.CalibrationObservation, on /calibration/observations: measurements in one picture.
 struct CalibrationObservationMessage {
   double time = 0;        ///< Middle of the exposure, s.
-  std::int64_t look = 0;  ///< Number of the look, from 1; 0 during the search for the arm.
+  std::int64_t look = 0;  ///< Number of the view, from 1; 0 during the search for the arm.
   std::string camera;
   std::int64_t frame = 0;                    ///< Number of the frame.
-  double pan = 0, tilt = 0;                  ///< Readings, rad.
-  double zoom = 1;                           ///< Reading of the zoom.
-  std::array<double, 3> stage = {0, 0, 0};   ///< Reading of the stage, m.
-  std::vector<std::array<double, 2>> bends;  ///< Reading of the arm, rad.
+  double pan = 0, tilt = 0;                  ///< Measured pan and tilt of the head, rad.
+  double zoom = 1;                           ///< Measured zoom of the head.
+  std::array<double, 3> stage = {0, 0, 0};   ///< Measured position of the stage, m.
+  std::vector<std::array<double, 2>> bends;  ///< Bends measured by the drives, rad.
   std::vector<MarkerMessage> markers;
   std::vector<AxisPointMessage> points;  ///< Points of the centerline, from base to tip.
   std::int64_t unknown = 0;              ///< Number of observed markers that were not identified.
   std::optional<std::string> reason;     ///< Why the picture is unusable.
   std::optional<std::vector<SeenValueMessage>> values;  ///< Values of the paper's methods.
   std::optional<CircleMessage> circle;                  ///< Circle of the paper's methods.
-  /// Image of the arm's axis for the ideal camera, from base to tip, px; methods with arcs.
+  /// Image of the arm's axis that the ideal camera would observe, from base to tip, px; only for methods with
+  /// arcs.
   std::optional<std::vector<std::array<double, 2>>> ideal;
 };
 
-/// flexura.CalibrationDecision, on /calibration/decisions: results after a look, and the next action.
+/// flexura.CalibrationDecision, on /calibration/decisions: results after a view, and the next action.
 struct CalibrationDecisionMessage {
   double time = 0;                    ///< In s.
-  std::int64_t looks = 0;             ///< Number of looks so far.
+  std::int64_t looks = 0;             ///< Number of views so far.
   bool found = false;                 ///< Whether a rig was found.
   std::optional<std::string> reason;  ///< Why no rig was found, or why the calibration ended early.
   double rms = 0;                     ///< RMS of the residuals, in standard deviations.
   std::int64_t outliers = 0;          ///< Number of outliers.
-  double angle = 0;        ///< Angle between the optical axes at the positions that would be commanded, rad.
-  double angle_sigma = 0;  ///< Standard deviation of this angle, rad.
+  double angle = 0;                   ///< Angle between the optical axes if the result were commanded, rad.
+  double angle_sigma = 0;             ///< Standard deviation of this angle, rad.
   std::array<double, 2> focal = {0, 0};        ///< Focal lengths, px.
   std::array<double, 2> focal_sigma = {0, 0};  ///< Relative standard deviations of the focal lengths.
   double zoom_ratio_sigma = 0;                 ///< Relative standard deviation of the zoom ratio.
   std::string next;                            ///< Next action in words.
-  std::optional<std::string> camera, step;  ///< For the paper's methods: camera of the offset, and its step.
-  std::optional<double> offset, accepted;   ///< For the paper's methods: the offset and its tolerance.
-  std::optional<std::string> unit;          ///< Unit of `offset` and `accepted`.
+  /// For the paper's methods: camera that moves, and step of the method.
+  std::optional<std::string> camera, step;
+  std::optional<double> offset, accepted;  ///< For the paper's methods: the offset and its tolerance.
+  std::optional<std::string> unit;         ///< Unit of `offset` and `accepted`.
   std::optional<bool>
       ended;  ///< Whether this is the last message; `next` then states how the calibration ended.
 };

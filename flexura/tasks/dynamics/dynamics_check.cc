@@ -27,7 +27,8 @@ void check_ways(const DynamicsTask& task, const std::string& path, Reader& reade
   const DynamicsTargetConfig& target = task.target;
   const bool has_angles = target.azimuths || target.elevations;
   if (gives_bends(target) && has_angles)
-    reader.problem_at(path, "gives a shape in more than one way: expected bends, or azimuths and elevations");
+    reader.problem_at(path,
+                      "gives the shape in more than one way: expected bends, or azimuths and elevations");
   if (!gives_bends(target) && !has_angles && !target.stretches)
     reader.problem_at(path, "is empty: expected a shape, as bends, or azimuths and elevations");
   if (target.azimuths.has_value() != target.elevations.has_value() ||
@@ -57,14 +58,14 @@ void check_angles(const DynamicsTask& task, const Arm& arm, const std::string& p
                                     elevations[i] / degree));
     if (arm.kind == ArmKind::planar && elevations[i] != 0)
       reader.problem_at(fmt::format("{}.elevations[{}]", path, i),
-                        "leaves the plane: expected 0 of a planar arm");
+                        "leaves the plane: expected 0 for a planar arm");
   }
   for (std::size_t i = 1; i < azimuths.size(); ++i) {
     constexpr double most = std::numbers::pi + 1e-9;
     if (std::abs(azimuths[i] - azimuths[i - 1]) > most)
       reader.problem_at(fmt::format("{}.azimuths[{}]", path, i),
-                        fmt::format("{:.6g} deg after {:.6g} deg: expected neighbours that differ by at most "
-                                    "half a turn; azimuths continue beyond 180 deg",
+                        fmt::format("{:.6g} deg follows {:.6g} deg: expected successive azimuths that differ "
+                                    "by at most 180 deg; azimuths may exceed 180 deg",
                                     azimuths[i] / degree, azimuths[i - 1] / degree));
   }
   const Eigen::Vector2d base = AnglesAlongArm(arm, ArmState::straight(arm.sections.size())).at(0, 0);
@@ -106,7 +107,7 @@ void check_keys(const DynamicsTask& task, const Setup& setup, const std::string&
   } else if (const double q = AnglesAlongArm(arm, arm_state(arm, task.target)).largest_elevation();
              q > most_elevation) {
     reader.problem_at(
-        target, fmt::format("leads through an elevation of {:.4g} deg: expected less than 90 deg, where "
+        target, fmt::format("passes through an elevation of {:.4g} deg: expected less than 90 deg, where "
                             "the azimuth is undefined",
                             q / degree));
   }
@@ -116,7 +117,7 @@ void check_keys(const DynamicsTask& task, const Setup& setup, const std::string&
   if (const double q = plant.largest_target_elevation(); q > most_elevation)
     reader.problem_at(
         target,
-        fmt::format("leads, as a polynomial (nodes = {}), through an elevation of {:.4g} deg: expected "
+        fmt::format("passes, as a polynomial (nodes = {}), through an elevation of {:.4g} deg: expected "
                     "less than 90 deg, where the azimuth is undefined",
                     task.nodes, q / degree));
 }

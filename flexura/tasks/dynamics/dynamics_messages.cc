@@ -11,9 +11,10 @@ const Table<DynamicsSampleMessage>& fields_of(const DynamicsSampleMessage*) {
           .field("time", &M::time, {.meaning = "Time since the experiment's start, s."})
           .field("kinetic_energy", &M::kinetic_energy, {.meaning = "T, J."})
           .field("gravity_energy", &M::gravity_energy,
-                 {.meaning = "V_g, J; the zero is all mass at the base."})
+                 {.meaning = "V_g, J; 0 if all mass were at the base's height."})
           .field("elastic_energy", &M::elastic_energy, {.meaning = "V_e, J."})
-          .field("potential", &M::potential, {.meaning = "Pi, J; it includes V_e if elasticity is shaped."})
+          .field("potential", &M::potential,
+                 {.meaning = "Pi, J; it includes V_e if `law.elasticity` is `shaped`."})
           .field("lyapunov", &M::lyapunov, {.meaning = "Lyapunov function W = T + Pi, J."})
           .field("taken_by_law", &M::taken_by_law,
                  {.meaning = "Energy removed by the law's damping since the task's start, J."})
@@ -24,7 +25,8 @@ const Table<DynamicsSampleMessage>& fields_of(const DynamicsSampleMessage*) {
           .field("elevation_error", &M::elevation_error,
                  {.meaning = "Error of q, root mean square along the arm, rad."})
           .field("spatial_error", &M::spatial_error,
-                 {.meaning = "Combined error of cos q times the error of theta and the error of q, rad."})
+                 {.meaning = "Root mean square of cos q times the error of theta, and the error of q, along "
+                             "the arm, rad."})
           .field("tip_error", &M::tip_error, {.meaning = "Distance of the tip from its target, m."})
           .field("s", &M::s, {.meaning = "Positions along the arm at rest, from base to tip, m."})
           .field("azimuths", &M::azimuths, {.meaning = "theta at these positions, rad, from +Y towards +X."})

@@ -12,17 +12,18 @@
 
 namespace flexura {
 
-/// Largest allowed elevation, rad. Nearer to a quarter turn, rounding errors dominate the azimuth.
+/// Largest allowed elevation, rad. At larger elevations, rounding errors dominate the azimuth, which is
+/// undefined at pi/2.
 inline constexpr double most_elevation = 1.569;
 
-/// The two direction angles along an arm: theta (azimuth) and q (elevation), defined in docs/estimation.md,
-/// rad. Theta is continuous along the arm and in (-pi, pi] at the base.
+/// The two direction angles along an arm, rad: theta (azimuth) and q (elevation), as defined in
+/// docs/estimation.md. Theta is continuous along the arm and in (-pi, pi] at the base.
 class AnglesAlongArm {
  public:
   /// `state` must fit the arm and be finite.
   AnglesAlongArm(const Arm& arm, const ArmState& state);
 
-  /// Returns (theta, q), rad, at the share `share` in [0, 1] of a section's length.
+  /// Returns (theta, q), rad, at the fraction `share` in [0, 1] of a section's length.
   [[nodiscard]] Eigen::Vector2d at(std::size_t section, double share) const;
   /// Returns the largest |q| on the arm, sampled in small steps.
   [[nodiscard]] double largest_elevation() const { return largest_elevation_; }
@@ -34,33 +35,34 @@ class AnglesAlongArm {
   double largest_elevation_ = 0;
 };
 
-/// Converts an experiment's arm to the distributed arm of a task of kind "dynamics", and back. The base is
-/// clamped.
+/// Converts an experiment's arm to the distributed arm of a task of kind "dynamics", and back. The
+/// distributed arm's base is clamped.
 class DynamicsPlant {
  public:
-  /// `from`: state of the arm, with |q| below a quarter turn at the base. Lengths that are not variable stay
-  /// as in `from`. The task must have been checked with the arm.
+  /// `from`: initial state of the arm, with |q| below pi/2 at the base. Lengths that are not variable remain
+  /// as in `from`. The task must have been checked for this arm.
   DynamicsPlant(const DynamicsTask& task, const Arm& arm, const ArmState& from);
 
   [[nodiscard]] const DistributedArm& distributed() const { return distributed_; }
   [[nodiscard]] const Eigen::VectorXd& start() const { return start_; }
   [[nodiscard]] const Eigen::VectorXd& target() const { return target_; }
-  /// Returns true if |q| is below a quarter turn everywhere on the arm at the start.
+  /// Returns true if |q| is below pi/2 everywhere on the arm at the start.
   [[nodiscard]] bool is_regular() const { return is_regular_; }
-  /// Returns the error with which the basis represents the start shape: root mean square of the angles'
-  /// errors along the arm, rad.
+  /// Returns how closely the basis represents the start shape: the root mean square error of the angles along
+  /// the arm, rad.
   [[nodiscard]] double start_off() const { return start_off_; }
-  /// Returns the error with which the basis represents the target shape, as start_off().
+  /// Returns how closely the basis represents the target shape: the root mean square error of the angles
+  /// along the arm, rad.
   [[nodiscard]] double target_off() const { return target_off_; }
   /// Returns the largest |q| of the target in the basis, rad. A polynomial may exceed its values at the
   /// nodes.
   [[nodiscard]] double largest_target_elevation() const;
-  /// Returns p_WB, m: the origin of the distributed arm's positions, along W's axes.
+  /// Returns p_WB, m: the origin of the distributed arm's positions. Their axes are those of W.
   [[nodiscard]] const Eigen::Vector3d& base() const { return arm_.X_WB.position; }
 
   /// Returns the state of the experiment's arm with the directions of the distributed arm at the sections'
-  /// ends. Of arcs that differ by whole turns, those nearest to `before` are used. If the arm is planar and
-  /// its angle linear in each section, both arms have the same curve.
+  /// ends. Of arcs that differ by full turns, it uses those nearest to `before`. Both arms have the same
+  /// curve if the arm is planar and its angle is linear in each section.
   [[nodiscard]] ArmState state(const Eigen::VectorXd& x, const ArmState& before) const;
   /// Returns (theta, q) at the sections' ends, rad.
   [[nodiscard]] Eigen::Matrix2Xd end_angles(const Eigen::VectorXd& x) const;

@@ -66,17 +66,17 @@ std::vector<ReportFigure> figures_of(const DynamicsRun& run, std::size_t number)
   constexpr double least_joule = 1e-9;
   std::vector<std::pair<std::string, Value>> lines = {
       {"W", &Shown::lyapunov}, {"T", &Shown::kinetic_energy}, {"Pi", &Shown::potential}};
-  draw("lyapunov", "Lyapunov's function W = T + Pi", "J", least_joule, lines);
+  draw("lyapunov", "Lyapunov function W = T + Pi", "J", least_joule, lines);
   for (auto& [line, value] : lines)
     value = [=](const Shown& at) { return std::log10(std::max(value(at), least_joule)); };
-  draw("lyapunov-powers", "the same", "J", 1, lines);
+  draw("lyapunov-powers", "change of W and removed energy", "J", 1, lines);
   std::get<LineChart>(figures.back().content).is_log = true;
   draw("energies", "the arm's energies, and the energy removed by damping", "J", least_joule,
        {{"gravity", &Shown::gravity_energy},
         {"elastic", &Shown::elastic_energy},
         {"law's damping", &Shown::taken_by_law},
         {"own damping", &Shown::taken_by_medium}});
-  draw("errors", "angles off the target, rms along the arm", "deg", 1e-3,
+  draw("errors", "errors of the angles, rms along the arm", "deg", 1e-3,
        {{"spatial", [](const Shown& at) { return at.spatial_error / degree; }},
         {"theta", [](const Shown& at) { return at.azimuth_error / degree; }},
         {"q", [](const Shown& at) { return at.elevation_error / degree; }}});
@@ -95,30 +95,30 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
     const LyapunovVerdict& verdict = *run.verdict;
     points.push_back(
         fmt::format("W decreases monotonically: {} (largest rise {:.2g} J). Its decrease equals the energy "
-                    "that damping removes: {} (largest difference {:.2g} J). W has settled in the end: {}.",
+                    "that damping removes: {} (largest difference {:.2g} J). W has settled at the end: {}.",
                     yes_or_no(verdict.is_monotone), verdict.largest_rise, yes_or_no(verdict.is_balanced),
                     verdict.imbalance, yes_or_no(verdict.is_settled)));
     if (run.is_measured) {
       points.emplace_back(
           "The law used measured angles with delay, noise or sampling. The theory assumes exact angles, so "
-          "the differences found here are due to the measurement.");
+          "the measurement causes differences from the theory.");
     } else {
       for (const std::string& reason : verdict.reasons)
-        points.push_back("The energies show: " + reason + ".");
+        points.push_back("Difference from the theory: " + reason + ".");
     }
   }
   if (run.triangulated > 0)
     points.push_back(
-        fmt::format("{:.3g} % of all measured points of the arm were within 10 deg of a quarter turn, or "
-                    "separated from their target by one: at these points both pictures were triangulated.",
+        fmt::format("{:.3g} % of all measured points of the arm were triangulated from both pictures. There, "
+                    "a plane angle was within 10 deg of 90 deg, or 90 deg was between it and its target.",
                     100 * run.triangulated));
   constexpr double little = 1e-9;
   if (run.left_over > little)
     points.push_back(fmt::format("The drives could not produce up to {:.3g} % of the law's largest force.",
                                  100 * run.left_over));
   points.push_back(
-      fmt::format("In the end the error of theta is {:.3g} deg and that of q {:.3g} deg, root mean square "
-                  "along the arm. The tip is {:.3g} mm from its target.",
+      fmt::format("At the end, the error of theta is {:.3g} deg and the error of q is {:.3g} deg, root mean "
+                  "square along the arm. The tip is {:.3g} mm from its target.",
                   run.remaining.azimuth / degree, run.remaining.elevation / degree, 1e3 * run.remaining.tip));
   const double off = std::max(run.plant.start_off(), run.plant.target_off());
   constexpr double shows = 1e-3;  // In rad.
@@ -140,12 +140,13 @@ TaskOutcome dynamics_outcome(const DynamicsRun& run) {
   TaskOutcome outcome{.task = run.name,
                       .kind = "dynamics",
                       .noun = "law",
-                      .success = "did as in theory",
+                      .success = "agree with the theory",
                       .is_reached = run.is_done(),
                       .text = {},
                       .size = run.remaining.tip,
                       .size_text = fmt::format("tip {} from its target", length_text(run.remaining.tip))};
-  const char* course = run.is_measured ? "at the target by measured angles" : "energy fell as in theory";
+  const char* course =
+      run.is_measured ? "reached the target with measured angles" : "energy decreased as in theory";
   outcome.text = run.is_done() ? fmt::format("{}, {}", course, outcome.size_text)
                                : fmt::format("not as in theory: {}; {}", run.reason(), outcome.size_text);
   return outcome;
@@ -183,13 +184,14 @@ Node dynamics_node(const DynamicsRun& run) {
 
 Chapter dynamics_chapter(const DynamicsRun& run, std::size_t number) {
   const double from = lyapunov_value(run.samples.front()), to = lyapunov_value(run.samples.back());
-  const std::string course = fmt::format("Lyapunov's function W went from {:.3g} J to {:.3g} J in {:.4g} s.",
-                                         from, to, run.samples.back().energies.time);
+  const std::string course =
+      fmt::format("The Lyapunov function W changed from {:.3g} J to {:.3g} J in {:.4g} s.", from, to,
+                  run.samples.back().energies.time);
   std::string text = fmt::format("Not in agreement with the theory: {}. {}", run.reason(), course);
   if (run.is_done())
     text = run.is_measured ? "The arm reached the target with measured angles. " + course
                            : "The arm reached the target in agreement with the theory: W decreased "
-                             "monotonically, by the energy that damping removed. " +
+                             "monotonically. Its decrease equals the energy that damping removed. " +
                                  course;
   Chapter chapter{"Dynamics: " + run.name, std::move(text), {}, findings_of(run), false};
   if (run.samples.size() > 1) chapter.figures = figures_of(run, number);

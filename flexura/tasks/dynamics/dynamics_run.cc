@@ -141,9 +141,9 @@ std::vector<std::string> theory_violations(const DynamicsTask& task, const Dynam
   if (G.size() == 0) return found;
   const Eigen::Index rank = rank_of(G);
   if (rank < G.rows())
-    found.push_back(
-        fmt::format("{} drives move an arm with {} coordinates: they cannot produce every force of the law",
-                    rank, G.rows()));
+    found.push_back(fmt::format(
+        "{} drives move an arm with {} coordinates: the drives cannot produce every force of the law", rank,
+        G.rows()));
   return found;
 }
 

@@ -41,13 +41,14 @@ struct DynamicsRun {
   std::vector<std::string> violations;  ///< Violated conditions of the theory, known before the run.
   std::string stopped;                  ///< Why the task ended early, or "".
   std::optional<LyapunovVerdict>
-      verdict;                       ///< Agreement with the theory; missing if the task could not begin.
-  std::vector<std::string> reasons;  ///< Differences from the theory. Empty if there are none, or if the law
-                                     ///< used measured angles and the arm reached its target.
-  DynamicsError remaining;           ///< Distance from the target at the end.
-  /// PotentialRun::left_over().
+      verdict;  ///< Agreement with the theory; missing if the task could not begin.
+  /// Differences from the theory. Empty if the run agrees with the theory, or if the law used measured angles
+  /// and the arm reached its target.
+  std::vector<std::string> reasons;
+  DynamicsError remaining;  ///< Distance from the target at the end.
+  /// Value of PotentialRun::left_over().
   double left_over = 0;
-  double triangulated = 0;  ///< PotentialRun::triangulated().
+  double triangulated = 0;  ///< Value of PotentialRun::triangulated().
   double apart = 0;  ///< Largest distance of the arm's tip from the tip of its approximation by arcs, m.
   MotionPtr motion;  ///< Motion of the approximation by arcs, with times from the task's start.
 
@@ -67,7 +68,7 @@ struct DynamicsRun {
 [[nodiscard]] std::vector<std::string> theory_violations(const DynamicsTask& task, const DynamicsPlant& plant,
                                                          const PotentialLaw& law);
 
-/// Runs the task with the label `label`, which begins in the state `from` at `start` (s).
+/// Runs the task with the label `label`. The task begins in the state `from` at the time `start` (s).
 [[nodiscard]] DynamicsRun run_dynamics(const DynamicsTask& task, const TaskLabel& label, const Setup& setup,
                                        const ArmState& from, double start, Progress& progress);
 

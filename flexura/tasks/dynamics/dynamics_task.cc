@@ -62,15 +62,15 @@ class DynamicsRunner : public TaskRunner {
     if (run_) {
       if (run_->apart > thickness_of(arm))
         report.caveats.push_back(
-            fmt::format("{}: the check uses arcs, whose tip is up to {:.3g} m from the arm's tip: sections "
-                        "that bend so far out of a plane are not arcs",
+            fmt::format("{}: the check approximates the arm by arcs, with an error of up to {:.3g} m at the "
+                        "tip, because the sections bend out of a plane",
                         name(), run_->apart));
       return;
     }
     report.caveats.push_back(fmt::format(
-        "{}: only the straight path to its target is checked: {}", name(),
+        "{}: only a straight path to the target is checked: {}", name(),
         ended_by.empty()
-            ? "the motion is simulated only after the previous tasks are done"
+            ? "the motion is simulated only after the previous tasks"
             : fmt::format("the motion is not simulated, because the run ends with {}", ended_by)));
     if (!is_possible(from)) return;
     const DynamicsPlant plant(task_, arm, from);
@@ -95,7 +95,7 @@ class DynamicsRunner : public TaskRunner {
   }
 
   [[nodiscard]] TaskOutcome outcome(const Motion& /*motion*/) const override {
-    return run_ ? dynamics_outcome(*run_) : not_begun(name(), "dynamics", "law", "did as in theory");
+    return run_ ? dynamics_outcome(*run_) : not_begun(name(), "dynamics", "law", "agree with the theory");
   }
   [[nodiscard]] std::string_view summary_list() const override { return "dynamics"; }
   [[nodiscard]] std::optional<Node> summary() const override {
@@ -124,8 +124,7 @@ class DynamicsTable : public LogTable {
                           sample.azimuth_error, sample.elevation_error, sample.spatial_error,
                           sample.tip_error});
     if (sample.points.empty())
-      throw std::runtime_error(
-          fmt::format("the log's sample of dynamics at {} s has no points", sample.time));
+      throw std::runtime_error(fmt::format("the log's dynamics sample at {} s has no points", sample.time));
     csv_.cells(sample.points.back());
     csv_.end_row();
   }

@@ -41,15 +41,15 @@ const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*) {
                         "Target shape of the law, by bends or by the two angles of the arm's direction."))
           .field("azimuths", &Target::azimuths,
                  {.meaning = "Azimuths theta of the arm's direction from +Y towards +X, at equal fractions "
-                             "of the length from base to tip. The first one is the base's; neighbours differ "
-                             "by at most half a turn.",
+                             "of the length from base to tip. The first azimuth is that of the base. "
+                             "Successive azimuths differ by at most half a turn.",
                   .unit = Unit::radian,
                   .range = between(-50, 50),
                   .count = {2, most_angles},
                   .default_text = "not set"})
           .field("elevations", &Target::elevations,
                  {.meaning = "Elevations q of the arm's direction from the plane XOY towards +Z, at the same "
-                             "points; below a quarter turn.",
+                             "points; their magnitude is below a quarter turn.",
                   .unit = Unit::radian,
                   .range = angle_range,
                   .count = {2, most_angles},
@@ -62,33 +62,39 @@ const Table<PotentialConfig>& fields_of(const PotentialConfig*) {
   static const auto table =
       Table<P>("law",
                "Gains of the artificial potential with gravity compensation and damping. Gains that violate "
-               "the theory are accepted; such a run shows the motion and ends as failed, with the reason.")
+               "the theory's conditions are accepted. The run then shows the motion and ends as failed, with "
+               "the reason.")
           .field("stiffness", &P::stiffness,
-                 {.meaning = "Potential stiffness k of theta and of q, N m per metre of arm and rad; above 0 "
-                             "by the theory. One for both, or one each.",
+                 {.meaning = "Potential stiffness k of theta and of q, N m per metre of arm and rad. The "
+                             "theory requires values above 0. One number for both angles, or one per angle.",
                   .range = gain,
                   .one_for_all = true})
           .field("damping", &P::damping,
-                 {.meaning = "Damping matrix K of the rates of (theta, q), N m s per metre of arm; positive "
-                             "definite by the theory.",
+                 {.meaning = "Damping matrix K of the rates of (theta, q), N m s per metre of arm. The "
+                             "theory requires a positive definite matrix.",
                   .range = gain})
           .field("length_stiffness", &P::length_stiffness,
-                 {.meaning =
-                      "Potential stiffness k of each variable section length, N/m; above 0 by the theory.",
+                 {.meaning = "Potential stiffness k of each variable section length, N/m. The theory "
+                             "requires a value above 0.",
                   .range = gain})
-          .field("length_damping", &P::length_damping,
-                 {.meaning = "Damping K of each variable section length, N s/m; above 0 by the theory.",
-                  .range = gain})
+          .field(
+              "length_damping", &P::length_damping,
+              {.meaning =
+                   "Damping K of each variable section length, N s/m. The theory requires a value above 0.",
+               .range = gain})
           .field("gravity_compensation", &P::gravity_compensation,
-                 {.meaning = "Compensated fraction of gravity; 1 by the theory.", .range = between(-10, 10)})
-          .field("elasticity", &P::elasticity,
-                 {.meaning =
-                      "Treatment of the arm's own elasticity: cancelled, part of the potential, or ignored. "
-                      "The theory does not allow `ignored` where the target bends or stretches the arm."})
+                 {.meaning = "Compensated fraction of gravity. The theory requires 1.",
+                  .range = between(-10, 10)})
+          .field(
+              "elasticity", &P::elasticity,
+              {.meaning =
+                   "Treatment of the arm's own elasticity: cancelled, part of the potential, or ignored. "
+                   "The theory does not allow `ignored` if the target bends or stretches the elastic arm."})
           .field("drives", &P::drives,
                  {.meaning = "Actuators that apply the law's force: everywhere along the arm, a uniform "
                              "torque along each section, or a moment from each section's base to its end. "
-                             "The last two apply the nearest force, which is exact with basis \"sections\"."})
+                             "Torques and moments apply the force nearest to the law's force; with the basis "
+                             "\"sections\" it is exact."})
           .field("sign", &P::sign,
                  {.meaning = "Sign of the potential's force: 1, or -1 to drive the arm away from the target.",
                   .range = between(-1, 1)});
@@ -102,14 +108,15 @@ const Table<MeasurementConfig>& fields_of(const MeasurementConfig*) {
                "Measurement of the arm's angles. The potential and both compensations use the latest "
                "measurement; damping uses the true rates.")
           .field("reading", &M::reading,
-                 {.meaning = "Measured quantity: theta and q at each node, or each point of the arm in two "
-                             "image planes. With `planes`, the potential's force uses the two plane errors; "
-                             "where these are undefined, both pictures are triangulated."})
+                 {.meaning =
+                      "Measured quantity: theta and q at each node, or each point of the arm in two "
+                      "image planes. With `planes`, the potential's force uses the angle errors in the two "
+                      "planes. Where these are undefined, points are triangulated from both pictures."})
           .field("delay", &M::delay,
                  {.meaning = "Delay of a measurement.", .unit = Unit::second, .range = between(0, 60)})
           .field("noise", &M::noise,
                  {.meaning = "Standard deviation of each measured angle, independent for each measurement. "
-                             "Planar arms have no noise out of their plane.",
+                             "The angles of planar arms get no noise out of the plane.",
                   .unit = Unit::radian,
                   .range = between(0, 10)})
           .field("step", &M::step,
@@ -123,10 +130,10 @@ const Table<MeasurementConfig>& fields_of(const MeasurementConfig*) {
 const Table<DynamicsTask>& fields_of(const DynamicsTask*) {
   using T = DynamicsTask;
   static const auto table =
-      Table<T>(
-          "dynamics",
-          "Motion of the arm as a continuum with mass, weight and elasticity under the paper's artificial "
-          "potential, from rest in its current shape. Drives, cameras and [truth] have no effect.")
+      Table<T>("dynamics",
+               "Moves the arm by the forces of the paper's artificial potential. The arm is a continuum with "
+               "mass, weight and elasticity; it starts at rest in its current shape. Drives, cameras and "
+               "[truth] have no effect.")
           .field("name", &T::name, {.meaning = "Name of the task in results.", .default_text = "its kind"})
           .field("duration", &T::duration,
                  {.meaning = "Duration of the motion.",
@@ -146,26 +153,27 @@ const Table<DynamicsTask>& fields_of(const DynamicsTask*) {
                  {.meaning = "Bending stiffness EI, N m^2.", .range = amount})
           .field("axial_stiffness", &T::axial_stiffness,
                  {.meaning = "Axial stiffness EA of variable lengths, N.", .range = amount})
-          .field("damping", &T::damping,
-                 {.meaning = "Damping by the medium: power lost per metre of arm that turns at 1 rad/s, W/m.",
-                  .range = amount})
+          .field(
+              "damping", &T::damping,
+              {.meaning =
+                   "Damping by the medium: power loss per metre of arm at a rotation rate of 1 rad/s, W/m.",
+               .range = amount})
           .field("length_damping", &T::length_damping,
                  {.meaning = "Damping of the rates of variable lengths, N s/m.", .range = amount})
           .field("variable_lengths", &T::variable_lengths,
                  {.meaning = "Whether the law changes the lengths of the sections."})
           .field("basis", &T::basis,
-                 {.meaning = "Each angle along the arm: linear in every section (arcs, where the arm bends "
-                             "in one plane), or one polynomial."})
+                 {.meaning = "Form of each angle along the arm: linear in every section (an arc if the arm "
+                             "bends in one plane), or one polynomial."})
           .field("nodes", &T::nodes,
-                 {.meaning = "Number of nodes of the polynomial, for each angle.", .range = between(1, 16)})
+                 {.meaning = "Number of nodes of each angle's polynomial.", .range = between(1, 16)})
           .field("law", &T::law, {.meaning = "Gains of the law."})
           .field("measurement", &T::measurement,
                  {.meaning = "Measurement of the arm's angles.", .default_text = "exact"})
-          .field(
-              "tolerance", &T::tolerance,
-              {.meaning =
-                   "Largest Lyapunov function W at the end for success, as a fraction of its initial value.",
-               .range = above_up_to(0, 1)});
+          .field("tolerance", &T::tolerance,
+                 {.meaning = "Largest final value of the Lyapunov function W that counts as success, as a "
+                             "fraction of its initial value.",
+                  .range = above_up_to(0, 1)});
   return table;
 }
 

@@ -27,7 +27,7 @@ struct DynamicsTargetConfig : ShapeConfig {
 };
 
 /// Gains of the artificial potential (PotentialGains). Values that violate a condition of the theory are
-/// accepted too, to show their effect.
+/// accepted, so that a run can show their effect.
 struct PotentialConfig {
   std::array<double, 2> stiffness = {20, 20};                         ///< Stiffnesses k of theta and q.
   std::array<std::array<double, 2>, 2> damping = {{{4, 0}, {0, 4}}};  ///< Damping matrix K.
@@ -39,7 +39,7 @@ struct PotentialConfig {
   std::int64_t sign = 1;  ///< Sign of the potential's force: 1, or -1 to lead away from the target.
 };
 
-/// Measurement of the angles by the law, if they are not exact (AngleMeasurement).
+/// Measurement of the angles that the law uses, if they are not exact (AngleMeasurement).
 struct MeasurementConfig {
   AngleReading reading = AngleReading::angles;
   double delay = 0;            ///< Delay of each measurement, s.
@@ -54,16 +54,17 @@ struct DynamicsTask {
   double duration = 5;  ///< Duration, s.
   DynamicsTargetConfig target;
   double density = 1;                             ///< Mass per length, kg/m.
-  std::array<double, 3> gravity = {0, -9.81, 0};  ///< In the world frame, m/s^2.
+  std::array<double, 3> gravity = {0, -9.81, 0};  ///< Gravity in the world frame, m/s^2.
   double bending_stiffness = 0;                   ///< Bending stiffness EI, N m^2.
   double axial_stiffness = 0;                     ///< Axial stiffness EA, N.
-  double damping = 0;                             ///< Damping coefficient c, N s.
+  double damping = 0;                             ///< Damping coefficient c of the medium, N s.
   double length_damping = 0;                      ///< Damping of variable lengths, N s/m.
   bool variable_lengths = false;                  ///< Whether the law also changes the sections' lengths.
   AngleBasis basis = AngleBasis::sections;        ///< Basis of both angles.
   std::int64_t nodes = 6;                         ///< Number of nodes for each angle (polynomial basis).
   PotentialConfig law;
-  std::optional<MeasurementConfig> measurement;  ///< Missing: the angles are exact.
+  /// Measurement of the angles; missing: the angles are exact.
+  std::optional<MeasurementConfig> measurement;
   double tolerance = 1e-3;  ///< Tolerance for success, as a fraction of the initial Lyapunov function W.
 };
 
@@ -76,12 +77,12 @@ const Table<PotentialConfig>& fields_of(const PotentialConfig*);
 const Table<MeasurementConfig>& fields_of(const MeasurementConfig*);
 const Table<DynamicsTask>& fields_of(const DynamicsTask*);
 
-/// Reports why the task at `path` ("task[2]") is not possible with this setup.
+/// Reports as errors why the task at `path` ("task[2]") is not possible with this setup.
 void check_keys(const DynamicsTask& task, const Setup& setup, const std::string& path, Reader& reader);
 /// Returns the runner of a task of kind "dynamics". `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const DynamicsTask& task, const Setup& setup,
                                                     TaskLabel label);
-/// Returns the table dynamics.csv, with the energies and errors of each sample in a row.
+/// Returns the table dynamics.csv: one row per sample, with the energies and errors.
 [[nodiscard]] LogTables log_tables(const DynamicsTask*);
 
 }  // namespace flexura

@@ -97,8 +97,8 @@ void check_columns(const std::vector<std::string>& names, const std::vector<Colu
       for (std::size_t section = 0; section < sections && used == 1; ++section) {
         if (!has(columns, quantity, section)) {
           problems.push_back({header_row, 0,
-                              fmt::format("no column {}_{}: expected one for each of {} sections", quantity,
-                                          section + 1, sections)});
+                              fmt::format("no column {}_{}: expected one column for each of {} sections",
+                                          quantity, section + 1, sections)});
         }
       }
     }
@@ -113,12 +113,13 @@ std::string time_problem(double time, std::optional<double> last) {
   constexpr double longest = 1e6;
   if (!last) return time == 0 ? "" : fmt::format("time {}: expected 0 in the first row", time);
   if (time > longest) return fmt::format("time {} s: expected at most {} s", time, longest);
-  if (!(time > *last)) return fmt::format("time {}: expected more than the {} before it", time, *last);
+  if (!(time > *last)) return fmt::format("time {}: expected more than the previous time, {}", time, *last);
   // Smaller differences have no finite rates.
   constexpr double least_apart = 1e-9;
-  return time - *last >= least_apart ? ""
-                                     : fmt::format("time {}: expected at least {} s after the {} before it",
-                                                   time, least_apart, *last);
+  return time - *last >= least_apart
+             ? ""
+             : fmt::format("time {}: expected at least {} s after the previous time, {}", time, least_apart,
+                           *last);
 }
 
 void check_rows(const KeyframesTask& task, const std::vector<Column>& columns,

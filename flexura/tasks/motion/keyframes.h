@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// Special values of KeyframeProblem::row: the row of column names, and all rows together.
+/// Special values of KeyframeProblem::row for the row of column names and for the table as a whole.
 inline constexpr std::ptrdiff_t header_row = -1;
 inline constexpr std::ptrdiff_t all_rows = -2;
 
@@ -23,7 +23,7 @@ struct KeyframeProblem {
 [[nodiscard]] std::vector<KeyframeProblem> keyframe_problems(const KeyframesTask& task, ArmKind kind,
                                                              std::size_t sections);
 
-/// Returns the motion through the rows of a task without problems.
+/// Returns the motion through the rows of a valid task.
 [[nodiscard]] MotionPtr keyframes_task_motion(const KeyframesTask& task, const Arm& arm);
 
 }  // namespace flexura

@@ -195,7 +195,7 @@ double duration_of(const KeyframesTask& task) {
 std::string text_of(const MoveTask& task, double distance_to_target, double duration) {
   return task.to.position
              ? fmt::format("tip {} from its target after {:.4g} s", length_text(distance_to_target), duration)
-             : fmt::format("at its shape after {:.4g} s", duration);
+             : fmt::format("at the target shape after {:.4g} s", duration);
 }
 
 std::string text_of(const HoldTask& /*task*/, double /*distance*/, double duration) {
@@ -211,7 +211,7 @@ std::string text_of(const KeyframesTask& task, double /*distance*/, double durat
 }
 
 std::string text_of(const ExpressionTask& /*task*/, double /*distance*/, double duration) {
-  return fmt::format("followed its formulas for {:.4g} s", duration);
+  return fmt::format("followed the formulas for {:.4g} s", duration);
 }
 
 // A task whose motion is known from its start.

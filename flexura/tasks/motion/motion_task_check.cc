@@ -15,8 +15,8 @@ namespace {
 
 void check_one_or_each(std::size_t given, std::size_t sections, const std::string& path, Reader& reader) {
   if (given == 1 || given == sections) return;
-  reader.problem_at(path,
-                    fmt::format("{} given: expected 1 for all sections, or {}, one each", given, sections));
+  reader.problem_at(path, fmt::format("{} given: expected 1 value for all sections, or {}, one per section",
+                                      given, sections));
 }
 
 void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const std::string& path,
@@ -40,13 +40,14 @@ void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const s
     reader.problem_at(path + ".law",
                       "mixes trapezoid with other laws: expected trapezoid for all sections or for none");
   }
-  if (!task.max_rate) reader.problem_at(path + ".max_rate", "missing: a trapezoid needs it");
-  if (!task.max_acceleration) reader.problem_at(path + ".max_acceleration", "missing: a trapezoid needs it");
+  if (!task.max_rate) reader.problem_at(path + ".max_rate", "missing: the law trapezoid needs it");
+  if (!task.max_acceleration)
+    reader.problem_at(path + ".max_acceleration", "missing: the law trapezoid needs it");
   if (task.max_rate) check_one_or_each(task.max_rate->size(), sections, path + ".max_rate", reader);
   if (task.max_acceleration)
     check_one_or_each(task.max_acceleration->size(), sections, path + ".max_acceleration", reader);
   if (task.duration)
-    reader.problem_at(path + ".duration", "is computed by the trapezoid: expected no duration");
+    reader.problem_at(path + ".duration", "the law trapezoid computes the duration: expected no duration");
 }
 
 void check_one(const SineTask& task, ArmKind kind, std::size_t sections, const std::string& path,
@@ -61,8 +62,9 @@ void check_one(const KeyframesTask& task, ArmKind kind, std::size_t sections, co
                Reader& reader) {
   if (!task.file.empty()) {
     if (!task.columns.empty() || !task.rows.empty()) {
-      reader.problem_at(path + ".file",
-                        "is given together with columns or rows: expected either a file or those");
+      reader.problem_at(
+          path + ".file",
+          "is given together with columns or rows: expected either a file, or columns and rows");
     }
     return;  // Checked after the file is read.
   }
@@ -135,7 +137,7 @@ void check_one(const ExpressionTask& task, ArmKind kind, std::size_t sections, c
   if (ways == 0 && !task.stretches)
     reader.problem_at(path, "is empty: expected cord_angles, archings, bends or stretches");
   if (kind == ArmKind::spatial && (task.cord_angles || task.archings)) {
-    reader.problem_at(path, "cord_angles and archings are for planar arms: expected bends for a spatial one");
+    reader.problem_at(path, "cord_angles and archings are for planar arms: expected bends for a spatial arm");
   }
   check_formulas(task.cord_angles, task.duration, sections, path + ".cord_angles", reader);
   check_formulas(task.archings, task.duration, sections, path + ".archings", reader);

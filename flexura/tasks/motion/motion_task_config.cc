@@ -29,10 +29,10 @@ const std::vector<std::string>& names_of(const Interpolation*) {
 const Table<MoveTarget>& fields_of(const MoveTarget*) {
   static const auto table =
       with_shape_fields(
-          Table<MoveTarget>("target",
-                            "Target shape of the arm, or target position of its tip. For a tip position, "
-                            "the program finds a shape within the arm's limits. The search starts at the "
-                            "current shape."))
+          Table<MoveTarget>(
+              "target",
+              "Target shape of the arm, or target position of its tip. For a tip position, the program "
+              "searches a shape within the arm's limits, starting at the current shape."))
           .field("position", &MoveTarget::position,
                  {.meaning = "Position of the tip in the world, instead of a shape.",
                   .unit = Unit::metre,
@@ -44,8 +44,9 @@ const Table<MoveTarget>& fields_of(const MoveTarget*) {
 const Table<MoveTask>& fields_of(const MoveTask*) {
   static const auto table =
       Table<MoveTask>("move",
-                      "Moves the arm to another shape, with bend and stretch of each section on a straight "
-                      "line. With cord angles and one law per section, each law applies to its cord angle.")
+                      "Moves the arm to another shape. The bend and stretch of each section change along a "
+                      "straight line. If the shape is given by cord angles and each section has its own law, "
+                      "the laws apply to the cord angles.")
           .field("name", &MoveTask::name, name_spec)
           .field("duration", &MoveTask::duration,
                  {.meaning = "Duration of the motion; computed for a trapezoid.",
@@ -54,22 +55,23 @@ const Table<MoveTask>& fields_of(const MoveTask*) {
                   .default_text = "1"})
           .field("law", &MoveTask::law,
                  {.meaning = "Time law: constant rate, minimum jerk, or fastest within `max_rate` and "
-                             "`max_acceleration`. One for all sections, or one each.",
+                             "`max_acceleration`. One law for all sections, or one per section.",
                   .one_for_all = true})
           .field("max_rate", &MoveTask::max_rate,
-                 {.meaning = "Trapezoid: largest bend rate of a section; a stretch change of 1 counts as 1 "
-                             "rad. One for all sections, or one each; all arrive together.",
+                 {.meaning = "Law `trapezoid`: largest bend rate of a section; a stretch rate of 1/s counts "
+                             "as 1 rad/s. One rate for all sections, or one per section. All sections arrive "
+                             "at the same time.",
                   .unit = Unit::radian_per_second,
                   .range = above_up_to(0, 1e6),
                   .one_for_all = true,
                   .default_text = "not set"})
-          .field(
-              "max_acceleration", &MoveTask::max_acceleration,
-              {.meaning = "Trapezoid: largest acceleration of a section. One for all sections, or one each.",
-               .unit = Unit::radian_per_second_squared,
-               .range = above_up_to(0, 1e6),
-               .one_for_all = true,
-               .default_text = "not set"})
+          .field("max_acceleration", &MoveTask::max_acceleration,
+                 {.meaning = "Law `trapezoid`: largest acceleration of a section. One value for all "
+                             "sections, or one per section.",
+                  .unit = Unit::radian_per_second_squared,
+                  .range = above_up_to(0, 1e6),
+                  .one_for_all = true,
+                  .default_text = "not set"})
           .field("to", &MoveTask::to,
                  {.meaning = "Target shape, as `to.archings_deg = [...]`, or target tip position, as "
                              "`to.position = [x, y, z]`.",
@@ -99,7 +101,7 @@ const Table<SineTask>& fields_of(const SineTask*) {
                  {.meaning = "Amplitude of each section, as `amplitude.archings_deg = [...]`.",
                   .required = true})
           .field("phase", &SineTask::phase,
-                 {.meaning = "Initial phase of each section: one for all sections, or one each.",
+                 {.meaning = "Initial phase: one value for all sections, or one per section.",
                   .unit = Unit::radian,
                   .range = angle_range,
                   .one_for_all = true});
@@ -108,32 +110,36 @@ const Table<SineTask>& fields_of(const SineTask*) {
 
 const Table<KeyframesTask>& fields_of(const KeyframesTask*) {
   static const auto table =
-      Table<KeyframesTask>("keyframes",
-                           "Moves the arm through shapes at given times. One column is `time` (s in the "
-                           "task, from 0). Every section has `arching_1`, `cord_angle_1` or the pair "
-                           "`bend_x_1`, `bend_y_1` (rad, or with `_deg`, `_pi`). Sections that stretch also "
-                           "have `stretch_1`. The first row is the current shape.")
+      Table<KeyframesTask>(
+          "keyframes",
+          "Moves the arm through shapes at given times. The column `time` is in s from the task's start; the "
+          "first row is at 0. Section 1 has the column `arching_1`, `cord_angle_1` or the pair `bend_x_1`, "
+          "`bend_y_1`, in rad; names may end in `_deg` or `_pi` for other units. Sections that stretch also "
+          "have `stretch_1`. The first row must be the current shape.")
           .field("name", &KeyframesTask::name, name_spec)
           .field("file", &KeyframesTask::file,
                  {.meaning = "CSV file in this file's folder or below. Its first line names the columns.",
                   .default_text = "not set"})
           .field("columns", &KeyframesTask::columns,
-                 {.meaning = "Names of the columns, without `file`.",
+                 {.meaning = "Names of the columns; only without `file`.",
                   .count = {0, 10000},
                   .default_text = "not set"})
           .field("rows", &KeyframesTask::rows,
-                 {.meaning = "Rows, without `file`.", .count = {0, max_rows}, .default_text = "not set"})
+                 {.meaning = "Rows of values; only without `file`.",
+                  .count = {0, max_rows},
+                  .default_text = "not set"})
           .field("interpolation", &KeyframesTask::interpolation,
-                 {.meaning = "Interpolation between rows: linear, or cubic and at rest at both ends."});
+                 {.meaning = "Interpolation between rows: linear, or cubic with zero rates at both ends."});
   return table;
 }
 
 const Table<ExpressionTask>& fields_of(const ExpressionTask*) {
   static const auto table =
-      Table<ExpressionTask>("expression",
-                            "Moves the arm by formulas such as `\"0.3*sin(2*pi*t/T)\"`, one for all sections "
-                            "or one each. The variables are `t` (s in the task), `T` (duration of the "
-                            "task) and `i` (number of the section from 1). Angles are in rad.")
+      Table<ExpressionTask>(
+          "expression",
+          "Moves the arm by formulas such as `\"0.3*sin(2*pi*t/T)\"`: one for all sections, or one per "
+          "section. The variables are `t` (time from the task's start, s), `T` (duration of the task, s) and "
+          "`i` (number of the section, from 1). Angles are in rad.")
           .field("name", &ExpressionTask::name, name_spec)
           .field("duration", &ExpressionTask::duration, duration_spec)
           .field("cord_angles", &ExpressionTask::cord_angles,

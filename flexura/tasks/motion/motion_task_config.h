@@ -29,7 +29,7 @@ struct MoveTarget : ShapeConfig {
 struct MoveTask {
   std::string name;
   std::optional<double> duration;  ///< Duration, s; default: 1. The law `trapezoid` computes its duration.
-  std::vector<MoveLaw> law = {MoveLaw::linear};  ///< One law for all sections, or one for each.
+  std::vector<MoveLaw> law = {MoveLaw::linear};  ///< One law for all sections, or one law per section.
   std::optional<std::vector<double>>
       max_rate;  ///< Largest bend rates, rad/s, for `trapezoid` only: one for all sections, or one for each.
   /// Largest accelerations of bends, rad/s^2, for `trapezoid` only: one for all sections, or one for each.
@@ -46,9 +46,9 @@ struct HoldTask {
 /// `kind = "sine"`: every section oscillates about its current shape.
 struct SineTask {
   std::string name;
-  double duration = 1.0;              ///< Duration, s.
-  double period = 1.0;                ///< Period of the oscillation, s.
-  ShapeConfig amplitude;              ///< Amplitude of cord angles, archings or bends; not of stretches.
+  double duration = 1.0;  ///< Duration, s.
+  double period = 1.0;    ///< Period of the oscillation, s.
+  ShapeConfig amplitude;  ///< Amplitude of cord angles, archings or bends. Stretches cannot oscillate.
   std::vector<double> phase = {0.0};  ///< Phases, rad: one for all sections, or one for each.
 };
 
@@ -56,8 +56,7 @@ struct SineTask {
 /// experiment.
 struct KeyframesTask {
   std::string name;
-  std::string
-      file;  ///< CSV file in the experiment's folder, whose content is read into `columns` and `rows`.
+  std::string file;  ///< CSV file in the experiment's folder. Its content is read into `columns` and `rows`.
   std::vector<std::string> columns;       ///< Names of the columns: "time", and for each section "arching_1",
                                           ///< "cord_angle_1_deg", "bend_x_1", ...
   std::vector<std::vector<double>> rows;  ///< Values in the order of the columns.
@@ -85,18 +84,18 @@ const Table<SineTask>& fields_of(const SineTask*);
 const Table<KeyframesTask>& fields_of(const KeyframesTask*);
 const Table<ExpressionTask>& fields_of(const ExpressionTask*);
 
-/// Reports why the task at `path` ("task[2]") does not fit the setup.
+/// Reports as errors why the task at `path` ("task[2]") does not fit the setup.
 void check_keys(const MoveTask& task, const Setup& setup, const std::string& path, Reader& reader);
-/// Reports why the task at `path` does not fit the setup.
+/// Reports as errors why the task at `path` does not fit the setup.
 void check_keys(const HoldTask& task, const Setup& setup, const std::string& path, Reader& reader);
-/// Reports why the task at `path` does not fit the setup.
+/// Reports as errors why the task at `path` does not fit the setup.
 void check_keys(const SineTask& task, const Setup& setup, const std::string& path, Reader& reader);
-/// Reports why the task at `path` does not fit the setup.
+/// Reports as errors why the task at `path` does not fit the setup.
 void check_keys(const KeyframesTask& task, const Setup& setup, const std::string& path, Reader& reader);
-/// Reports why the task at `path` does not fit the setup.
+/// Reports as errors why the task at `path` does not fit the setup.
 void check_keys(const ExpressionTask& task, const Setup& setup, const std::string& path, Reader& reader);
 
-/// Reads the rows of the task's CSV file. Adds errors in the file to `problems`, with their line numbers.
+/// Reads the rows of the task's CSV file. Adds each error in the file, with its line number, to `problems`.
 void read_files(KeyframesTask& task, const Setup& setup, const Node& written, const std::string& path,
                 std::vector<Problem>& problems);
 
@@ -109,10 +108,10 @@ void read_files(KeyframesTask& task, const Setup& setup, const Node& written, co
 /// Returns the runner of a sine. `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const SineTask& task, const Setup& setup,
                                                     TaskLabel label);
-/// Returns the runner of keyframes. `task` and `setup` must outlive the runner.
+/// Returns the runner of a task with keyframes. `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const KeyframesTask& task, const Setup& setup,
                                                     TaskLabel label);
-/// Returns the runner of expressions. `task` and `setup` must outlive the runner.
+/// Returns the runner of a task with expressions. `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const ExpressionTask& task, const Setup& setup,
                                                     TaskLabel label);
 

@@ -25,10 +25,10 @@ const Table<ServoObservationMessage>& fields_of(const ServoObservationMessage*) 
           .field("target", &M::desired,
                  {.meaning = "Image of the target shape in the camera model, from base to tip, px."})
           .field("features", &M::features,
-                 {.meaning = "Features that the law compares in the picture. For the laws points and "
-                             "silhouettes: pixels. For chords and potential: chords, where each target chord "
-                             "is rotated about the middle of the measured chord. For moments: the centroid "
-                             "and the ellipse of the second moments."})
+                 {.meaning = "Features that the law compares in the picture. The laws points and silhouettes "
+                             "have pixels. The laws chords and potential have chords; a target chord is the "
+                             "measured chord, rotated about its middle. The law moments has the centroid and "
+                             "the ellipse of the second moments."})
           .field("reason", &M::reason, {.meaning = "Why the picture shows no arm."});
   return table;
 }

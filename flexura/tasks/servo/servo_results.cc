@@ -173,8 +173,8 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
                   false};
   if (result.settled)
     chapter.points.push_back(
-        fmt::format("The error stayed within 2 % of the arm's length from {:.2f} s on; the tip overshot by "
-                    "{:.1f} % of its way.",
+        fmt::format("The error stayed within 2 % of the arm's length after {:.2f} s. The tip overshot by "
+                    "{:.1f} % of its path.",
                     *result.settled, 100 * std::max(0.0, result.overshoot)));
   if (result.remaining)
     chapter.points.push_back(fmt::format("Mean observed error over the last {:.3g} s: {}.", run.settle,
@@ -194,7 +194,8 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
                     100 * result.missed));
   if (result.missed_steps > 0)
     chapter.points.push_back(
-        fmt::format("{} steps were missed because computing took longer than a step.", result.missed_steps));
+        fmt::format("{} control steps were missed because the computation took longer than a step.",
+                    result.missed_steps));
   for (std::size_t i = 0; i < 2; ++i) {
     if (result.first) chapter.figures.push_back(servo_photograph(run, i, false, number));
     if (result.last) chapter.figures.push_back(servo_photograph(run, i, true, number));

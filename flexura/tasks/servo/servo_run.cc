@@ -65,7 +65,7 @@ class LoggedServo : public ServoSessionWatcher {
     if (!begun_) begun_ = step.time;
     stage_.progress.update(
         std::min(0.99, (step.time - *begun_) / expected_),
-        step.error ? fmt::format("{}: {:.2f} % of the length off", run_.name, 100 * step.error->rms)
+        step.error ? fmt::format("{}: error {:.2f} % of the length", run_.name, 100 * step.error->rms)
                    : run_.name);
   }
   void reported(double time, const std::string& what) override {

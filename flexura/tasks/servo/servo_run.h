@@ -19,20 +19,22 @@ struct ServoRun {
   std::string name;
   std::array<std::string, 2> cameras;  ///< Names of the cameras.
   RigModel nominal;
-  double settle = 0;  ///< ServoSettings::settle of the task, s.
-  /// Result of the session. Its steps have the simulated truth, which is unknown to the session. If the
-  /// target was given by pictures, the truth is compared with the shape estimated from them.
+  double settle = 0;  ///< The task's ServoSettings::settle, s.
+  /// Result of the session. Its steps include the true errors in the simulation, which the session does not
+  /// know. If pictures give the target, the true shape is compared with the shape estimated from the
+  /// pictures.
   ServoResult result;
   std::optional<ServoError>
       true_remaining;  ///< Mean true error over the last `settle` s; missing if the truth is unknown.
   MotionPtr motion;    ///< Commanded motion of the arm, from the task's start.
 };
 
-/// Returns the positions of the middles of the arm's bands, m along the arm model `nominal`, increasing. If
-/// calibrated lengths differ from those of the file, each band keeps its relative position in its section.
+/// Returns the increasing arc lengths of the middles of the arm's bands on the arm model `nominal`, m. If
+/// calibrated section lengths differ from those of the file, each band keeps its relative position in its
+/// section.
 [[nodiscard]] std::vector<double> band_places(const Setup& setup, const Arm& nominal);
 
-/// Returns the approximate duration of a servo to the targets of a task, s.
+/// Returns the approximate duration of a servo task, s.
 [[nodiscard]] double expected_duration(const ServoTask& task);
 
 /// Returns the configuration of a session for the task, with the arm in the state `from`.

@@ -157,9 +157,10 @@ RecordedViews recorded_views(const ServoTargetConfig& target, const std::array<C
     const SensorConfig& sensor = cameras[i].sensor;
     const Image<std::uint8_t>& bytes = photograph.bytes;
     if (bytes.width() != sensor.width || bytes.height() != sensor.height)
-      throw input_error(path.string(),
-                        fmt::format("{} x {} px: expected {} x {}, as camera {} takes them", bytes.width(),
-                                    bytes.height(), sensor.width, sensor.height, cameras[i].name));
+      throw input_error(
+          path.string(),
+          fmt::format("{} x {} px: expected {} x {} px, the picture size of camera {}", bytes.width(),
+                      bytes.height(), sensor.width, sensor.height, cameras[i].name));
     if (sensor.bits > 8 && photograph.words.values().empty())
       throw input_error(path.string(),
                         fmt::format("8 bits per value: expected {}, as in the pictures of camera {}",

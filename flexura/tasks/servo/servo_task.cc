@@ -89,8 +89,8 @@ class ServoRunner : public TaskRunner {
                    SafetyReport& report) const override {
     if (!run_)
       report.caveats.push_back(
-          fmt::format("{}: only a slow straight path to the targets is checked now. The actual path is "
-                      "chosen during the run, within all limits, and checked at that time",
+          fmt::format("{}: only a slow straight path to the targets is checked now. The servo chooses the "
+                      "actual path during the run, where each command is checked against all limits",
                       name()));
   }
 

@@ -54,22 +54,24 @@ M ServoTask::* of_task(M ServoSettings::* setting) {
 const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
   using Target = ServoTargetConfig;
   static const auto table =
-      with_shape_fields(Table<Target>("target",
-                                      "Target shape of the arm in one form: bends, tip position, backbone "
-                                      "curve in space, direction angles, or two pictures of the arm.")
-                            .field("time", &Target::time,
-                                   {.meaning = "Time of the target from the task's start. Between targets "
-                                               "the reference is interpolated linearly.",
-                                    .unit = Unit::second,
-                                    .range = between(0, longest_time)}))
+      with_shape_fields(
+          Table<Target>("target",
+                        "Target shape of the arm. Exactly one of these gives it: bends, the tip's position, "
+                        "a backbone curve in space, direction angles, or two pictures of the arm.")
+              .field("time", &Target::time,
+                     {.meaning = "Time of the target from the task's start. Between targets "
+                                 "the reference is interpolated linearly.",
+                      .unit = Unit::second,
+                      .range = between(0, longest_time)}))
           .field("position", &Target::position,
                  {.meaning = "Position of the tip in the world.",
                   .unit = Unit::metre,
                   .range = between(-1e6, 1e6),
                   .default_text = "not set"})
           .field("curve", &Target::curve,
-                 {.meaning = "Points of the backbone in the world from base to tip. `tolerance` limits the "
-                             "distance between the smooth curve through them and the nearest shape.",
+                 {.meaning =
+                      "Points of the backbone in the world from base to tip. `tolerance` limits the distance "
+                      "between the smooth curve through these points and the arm's nearest shape.",
                   .unit = Unit::metre,
                   .range = between(-1e6, 1e6),
                   .count = {2, most_points},
@@ -82,40 +84,41 @@ const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
                   .count = {2, most_points},
                   .default_text = "not set"})
           .field("elevations", &Target::elevations,
-                 {.meaning =
-                      "Elevations of the arm's direction from the plane XOY towards +Z, at the same points.",
+                 {.meaning = "Elevations of the arm's direction from the plane XOY towards +Z, at the points "
+                             "of `azimuths`.",
                   .unit = Unit::radian,
                   .range = angle_range,
                   .count = {2, most_points},
                   .default_text = "not set"})
-          .field("pictures", &Target::pictures,
-                 {.meaning = "Two picture files in this file's folder or below, from the task's cameras in "
-                             "this order, at their positions at the task's start.",
-                  .count = {2, 2},
-                  .default_text = "not set"});
+          .field(
+              "pictures", &Target::pictures,
+              {.meaning = "Two picture files in this file's folder or below, in the order of the task's "
+                          "cameras. They were taken with the cameras at their positions at the task's start.",
+               .count = {2, 2},
+               .default_text = "not set"});
   return table;
 }
 
 const Table<ServoTask>& fields_of(const ServoTask*) {
   using T = ServoTask;
   static const auto table =
-      Table<T>(
-          "servo",
-          "Servos the shape of the arm to a target by two cameras. The duration depends on the convergence.")
+      Table<T>("servo",
+               "Controls the shape of the arm by feedback from two cameras until it reaches the target. The "
+               "duration depends on the convergence.")
           .field("name", &T::name, {.meaning = "Name of the task in results.", .default_text = "its kind"})
-          .field(
-              "law", of_task(&T::law),
-              {.meaning =
-                   "Error that drives the arm. `shape`: shape estimated from both images minus "
-                   "target shape. `points`, `chords`, `moments`: image features. `silhouettes`: "
-                   "image edges. `potential`: the paper's artificial potential on the errors in "
-                   "two image planes (XOY of the first camera, ZOY of the second). "
-                   "`predictive`: the shape, with commands planned ahead so that a dynamic arm "
-                   "stops swinging. `computed_torque` and `shape_potential`: the shape, by the forces in the "
-                   "modes of the arm's swing."})
+          .field("law", of_task(&T::law),
+                 {.meaning = "Control law: the error that it reduces, and how. `shape`: difference between "
+                             "the shape estimated from both images and the target shape. `points`, `chords`, "
+                             "`moments`: errors of image features. `silhouettes`: errors of the arm's image "
+                             "edges. `potential`: the paper's artificial potential on the errors in "
+                             "two image planes (XOY of the first camera, ZOY of the second). "
+                             "`predictive`: the shape error, with commands planned ahead so that a dynamic "
+                             "arm stops swinging. `computed_torque` and `shape_potential`: the shape error, "
+                             "with forces in the modes of the arm's oscillation."})
           .field("measure", of_task(&T::measure),
-                 {.meaning = "Source of the angles for chords and potential: each picture alone, or optical "
-                             "flow since the previous picture, with correction towards each picture."})
+                 {.meaning = "Source of the angles for the laws chords and potential: each picture alone, or "
+                             "optical flow since the previous picture. Angles by flow are corrected towards "
+                             "those of each picture."})
           .field(
               "anchor", of_task(&T::anchor),
               {.meaning = "Time constant of the correction of flow angles: errors decay as exp(-t/anchor).",
@@ -130,19 +133,21 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                  {.meaning = "Target shapes in order of time, as `[[task.target]]`.",
                   .count = {1, most_targets},
                   .required = true})
-          .field("points", of_task(&T::points),
-                 {.meaning = "Number of points along the arm, for points, chords, potential and silhouettes.",
-                  .range = between(1, 200)})
+          .field(
+              "points", of_task(&T::points),
+              {.meaning =
+                   "Number of points along the arm, for the laws points, chords, potential and silhouettes.",
+               .range = between(1, 200)})
           .field("rate", of_task(&T::rate),
                  {.meaning = "Convergence rate, 1/s: errors decay as exp(-rate t).",
                   .range = above_up_to(0, 1000)})
           .field("damping", of_task(&T::damping),
                  {.meaning = "Damping of the least squares, relative to the root mean square of the "
-                             "derivatives; not used by shape.",
+                             "Jacobian's entries. The law shape does not use it.",
                   .range = between(0, 10)})
           .field("predict", of_task(&T::predict),
-                 {.meaning =
-                      "Whether the servo predicts the effect of commands that are newer than the picture."})
+                 {.meaning = "Whether the servo predicts the effect of commands that were sent after the "
+                             "picture was taken."})
           .field("tolerance", of_task(&T::tolerance),
                  {.meaning = "Largest shape error at which the target counts as reached: root mean square "
                              "along the arm, as a fraction of its length.",
@@ -163,16 +168,17 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                  {.meaning = "Time without an observation after which the task fails.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_time)})
-          .field("disturbance", of_task(&T::disturbance),
-                 {.meaning =
-                      "Change of the arm's shape that the drives do not explain, at which the servo holds "
-                      "the arm: root mean square along the arm, as a fraction of its length. The task fails "
-                      "if the change lasts for `give_up_after`.",
-                  .range = above_up_to(0, 1),
-                  .default_text =
-                      "0.05 with the arm's model \"dynamic\" and jacobian \"model\", otherwise not watched"})
+          .field(
+              "disturbance", of_task(&T::disturbance),
+              {.meaning = "If the arm's shape changes by more than this without a cause in the drives, the "
+                          "servo holds the arm. The change is the root mean square along the arm, as a "
+                          "fraction of its length. The task fails "
+                          "if the change lasts for `give_up_after`.",
+               .range = above_up_to(0, 1),
+               .default_text =
+                   "0.05 with the arm's model \"dynamic\" and jacobian \"model\", otherwise no such check"})
           .field("follow", of_task(&T::follow),
-                 {.meaning = "Whether the cameras' heads track the arm, and zoom out, to keep it in view."})
+                 {.meaning = "Whether the cameras' heads turn and zoom out to keep the arm in view."})
           .field("camera_prior", of_task(&T::camera_prior),
                  {.meaning = "Prior standard deviations of the camera models."})
           .field("step", &T::step,
@@ -227,10 +233,9 @@ void check_frames(const ServoTask& task, const std::vector<CameraConfig>& camera
   if (front >= cameras.size() || side >= cameras.size()) return;  // Already reported.
   const double frame = 1 / slower_frame_rate(cameras, {front, side});
   if (!task.step && (frame < shortest_step || frame > longest_step))
-    reader.problem_at(path + ".step",
-                      fmt::format("not given, and a frame of the slower camera takes {:.6g} s: expected a "
-                                  "step from {} s to {} s",
-                                  frame, shortest_step, longest_step));
+    reader.problem_at(path + ".step", fmt::format("missing, and the frame of the slower camera, {:.6g} s, "
+                                                  "cannot be used instead: expected a step from {} s to {} s",
+                                                  frame, shortest_step, longest_step));
   const double given_up = servo_settings(task, cameras).give_up_after;
   for (const std::size_t i : {front, side}) {
     const double late = times_of_frame_at(cameras[i].sensor, 0).received;
@@ -257,10 +262,11 @@ void check_target(const ServoTargetConfig& target, const ArmConfig& arm, const s
   const int ways = (has_shape ? 1 : 0) + (target.position ? 1 : 0) + (target.curve ? 1 : 0) +
                    (target.azimuths || target.elevations ? 1 : 0) + (target.pictures.empty() ? 0 : 1);
   if (ways != 1)
-    reader.problem_at(path,
-                      fmt::format("has {}: expected a shape in one way, as bends, position, curve, azimuths "
-                                  "and elevations, or pictures",
-                                  ways == 0 ? "no shape" : "a shape in more than one way"));
+    reader.problem_at(
+        path,
+        fmt::format(
+            "has {}: expected exactly one of bends, position, curve, azimuths with elevations, and pictures",
+            ways == 0 ? "no shape" : "a shape in more than one way"));
   if (target.azimuths.has_value() != target.elevations.has_value() ||
       (target.azimuths && target.azimuths->size() != target.elevations->size()))
     reader.problem_at(path, "has different numbers of azimuths and elevations: expected equal numbers");
@@ -281,11 +287,11 @@ void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<
   check_frames(task, cameras, path, reader);
   if (task.measure == ServoMeasure::flow && !has_chords(task.law))
     reader.problem_at(path + ".measure",
-                      "\"flow\" carries the angles of chords: expected the law chords or potential");
+                      "\"flow\" measures the angles of chords: expected the law chords or potential");
   if (task.jacobian != ServoJacobian::model && predicts_motion(task.law))
-    reader.problem_at(path + ".jacobian",
-                      "the laws predictive, computed_torque and shape_potential predict by the arm's model: "
-                      "expected \"model\"");
+    reader.problem_at(
+        path + ".jacobian",
+        "the laws predictive, computed_torque and shape_potential use the arm's model: expected \"model\"");
   for (std::size_t i = 0; i < task.target.size(); ++i) {
     const std::string place = fmt::format("{}.target[{}]", path, i);
     check_target(task.target[i], arm, place, reader);

@@ -20,10 +20,10 @@
 
 namespace flexura {
 
-/// A target shape of a servo, given by one of these fields or by those of ShapeConfig.
+/// A target shape of a servo. Either one of these fields or the fields of ShapeConfig give it.
 struct ServoTargetConfig : ShapeConfig {
   double time = 0;  ///< Time from the task's start, s.
-  /// Tip position p_WT, m; the shape follows by inverse kinematics.
+  /// Tip position p_WT, m. Inverse kinematics computes the shape.
   std::optional<std::array<double, 3>> position;
   /// Points along the whole backbone, in W, m.
   std::optional<std::vector<std::array<double, 3>>> curve;
@@ -32,11 +32,11 @@ struct ServoTargetConfig : ShapeConfig {
   std::vector<std::string> pictures;  ///< Two picture files, in the order of the task's cameras.
 };
 
-/// `kind = "servo"`: two cameras control the arm until it reaches the target shape. Unlike the settings, the
-/// fields added here depend on the arm, the cameras and the file's folder.
+/// `kind = "servo"`: two cameras control the arm until it reaches the target shape. The fields of this struct
+/// depend on the arm, the cameras and the file's folder; those of ServoSettings do not.
 struct ServoTask : ServoSettings {
   std::string name;
-  std::vector<std::string> cameras;       ///< Two names; empty: the first two cameras.
+  std::vector<std::string> cameras;       ///< Names of two cameras; empty: the first two cameras.
   std::vector<ServoTargetConfig> target;  ///< At least one target.
   std::optional<double> step;  ///< Time between commands, s; default: one frame of the slower camera.
 };
@@ -48,19 +48,19 @@ const Table<ServoTask>& fields_of(const ServoTask*);
 [[nodiscard]] std::array<std::size_t, 2> servo_cameras(const ServoTask& task,
                                                        const std::vector<CameraConfig>& cameras);
 
-/// Returns the settings of a task with these cameras. `hold_after` and `give_up_after` are raised if needed,
-/// so that the interval between two pictures of a slow camera does not stop the servo.
+/// Returns the settings of a task with these cameras. Increases `hold_after` and `give_up_after` if they are
+/// shorter than a slow camera's time between pictures allows.
 [[nodiscard]] ServoSettings servo_settings(const ServoTask& task, const std::vector<CameraConfig>& cameras);
 
-/// Reports why the servo at `path` ("task[2]") is not possible with this setup.
+/// Reports as errors why the servo at `path` ("task[2]") is not possible with this setup.
 void check_keys(const ServoTask& task, const Setup& setup, const std::string& path, Reader& reader);
-/// Checks the picture files of the targets. They are read again when the task begins.
+/// Checks the picture files of the targets. The pictures are read again when the task begins.
 void read_files(ServoTask& task, const Setup& setup, const Node& written, const std::string& path,
                 std::vector<Problem>& problems);
 /// Returns the runner of a servo. `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const ServoTask& task, const Setup& setup,
                                                     TaskLabel label);
-/// Returns the table servo.csv, with the distances of the arm from the target for each command in a row.
+/// Returns the table servo.csv: one row per command, with the distances of the arm from the target.
 [[nodiscard]] LogTables log_tables(const ServoTask*);
 
 }  // namespace flexura

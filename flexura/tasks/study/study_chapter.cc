@@ -108,15 +108,17 @@ std::string text_of(const ImageStudy& study) {
   const auto [length, ratio] = study.largest_difference();
   const auto [measured, rms] = study.measured_difference();
   const std::string pictures =
-      measured == 0 ? ""
-                    : fmt::format(" Rings: {} lengths measured in pictures of the square, {:.3f} px rms off.",
-                                  measured, rms);
+      measured == 0
+          ? ""
+          : fmt::format(
+                " Rings: {} lengths measured in pictures of the square, with an error of {:.3f} px rms.",
+                measured, rms);
   std::size_t seen = 0;
   for (std::size_t i = 0; i < study.values.size(); ++i) seen += study.is_seen(i) ? 1 : 0;
   return fmt::format(
       "Camera {}, {} from {} to {}; the target could be measured at {} of {} values. Lines: projection "
-      "formulas; dots: truth of the renderer. Both differ by at most {:.1e} px, and the ratios of axes by "
-      "{:.1e}.{}",
+      "formulas; dots: exact values of the renderer. They differ by at most {:.1e} px, and the ratios of "
+      "axes by {:.1e}.{}",
       study.camera, plain_name(study.variation.name), value_text(study.variation, study.variation.values[0]),
       value_text(study.variation, study.variation.values[1]), seen, study.values.size(), length, ratio,
       pictures);

@@ -84,7 +84,8 @@ TaskOutcome study_outcome(const ImageStudy& study) {
   outcome.size_text = length < 0.001 ? "within 0.001 px" : fmt::format("within {:.2g} px", length);
   outcome.text = "formulas agree with the renderer " + outcome.size_text;
   if (count > 0)
-    outcome.text += fmt::format(", {} lengths measured in pictures are off by {:.2g} px rms", count, rms);
+    outcome.text +=
+        fmt::format(", {} lengths measured in pictures have an error of {:.2g} px rms", count, rms);
   return outcome;
 }
 

@@ -10,14 +10,14 @@
 
 namespace flexura {
 
-/// Returns a study as CSV. The first column is the parameter, with its name in the file, in base units. It is
-/// followed by the features from each source ("top_formula", ..., "top_rendered", ...), px. The last column
-/// is in_image (1 or 0). Values that could not be measured are empty cells.
+/// Returns a study as CSV. The first column is the parameter, with its name in the file, in base units. The
+/// features from each source follow ("top_formula", ..., "top_rendered", ...), px. The last column, in_image
+/// (1 or 0), states whether the target is within the image. Values that could not be measured are empty
+/// cells.
 [[nodiscard]] std::string study_csv(const ImageStudy& study);
 
-/// Writes the study's tables/NAME.csv into a results folder and sets the study's name. The study's name is
-/// kept if it is a valid file name and differs from those of the previous studies. Throws std::runtime_error
-/// with the path on a system error.
+/// Writes the study's tables/NAME.csv into a results folder. Sets the study's name to a new one if it is not
+/// a valid file name or a previous study has it. Throws std::runtime_error with the path on a system error.
 void write_study_table(ImageStudy& study, const std::filesystem::path& folder);
 
 /// Returns the result of the study in words: how well the formulas, the renderer and the pictures agree.

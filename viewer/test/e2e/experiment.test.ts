@@ -77,7 +77,7 @@ describe.skipIf(!program)('the text of the experiment', () => {
     expect(read('arm.toml')).toBe(before);
     await area().fill(before);
     await until(async () => (await status()) === 'A valid experiment.');
-    for (const [name, why] of [['arm-2.toml', /exists already/], ['../arm-3.toml', /expected a name/]] as const) {
+    for (const [name, why] of [['arm-2.toml', /already exists/], ['../arm-3.toml', /expected a name/]] as const) {
       await field.fill(name);
       await page.locator('.experiment').getByRole('button', { name: 'Save' }).click();
       await until(async () => why.test((await page.locator('.notices').textContent()) ?? ''));

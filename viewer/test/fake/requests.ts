@@ -36,7 +36,7 @@ const moving = ['arm', 'tip', 'head', 'stage', 'halt', 'reset', 'run'];
 
 export function answer(hub: Hub, client: Client, request: Request): Answer {
   const { session } = hub;
-  if (session.mode === 'recording' && moving.includes(request.do)) throw new Error('this is a recording: nothing moves');
+  if (session.mode === 'recording' && moving.includes(request.do)) throw new Error('this is a recording, in which nothing can be moved');
   const handle = handlers[request.do];
   if (!handle) throw new Error(`no request is called "${request.do}"`);
   return handle(hub, request, client) ?? {};
@@ -93,7 +93,7 @@ const handlers: Record<string, (hub: Hub, request: Request, client: Client) => A
   reset: ({ session }) => session.reset(),
   run: (hub) => {
     const { session } = hub;
-    if (session.running) throw new Error('a run is going on');
+    if (session.running) throw new Error('a run of tasks is active');
     session.reset();
     session.running = session.time;
     const timer = setInterval(() => {

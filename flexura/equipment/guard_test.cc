@@ -155,8 +155,8 @@ TEST(Guard, DiscardsWhatASerialLineHasNotSent) {
 }
 
 // A device that takes its stop over a new connection.
-struct Listener {
-  Listener() : socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+struct StopListener {
+  StopListener() : socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in place{};
     place.sin_family = AF_INET, place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof place;
@@ -181,7 +181,7 @@ struct Listener {
 };
 
 TEST(Guard, StopsADeviceAtAnAddressByItsNewestMessages) {
-  const Listener device;
+  const StopListener device;
   Line line;  // Links are stopped too, however long a connection takes.
   const pid_t program = started([&] {
     Guard guard(1000);
@@ -202,7 +202,7 @@ TEST(Guard, EndsAlsoWhenADeviceAtAnAddressIsGone) {
   Line line;
   Guard guard(1000);
   {
-    const Listener gone;
+    const StopListener gone;
     guard.protect(gone.address, brake());
   }
   guard.protect(*line.host, brake_then_reset());

@@ -122,6 +122,7 @@ class SimulatedWatchdog : public Watchdog {
     void send(int link, const char* bytes, std::size_t size) noexcept override {
       of_.lines_[static_cast<std::size_t>(link)]->send({bytes, size});
     }
+    void send_to_address(std::size_t /*device*/, const GuardMessage& /*stop*/) noexcept override {}
     SimulatedWatchdog& of_;
   };
   SimulatedThreads& time_;

@@ -14,6 +14,8 @@
 #include <variant>
 #include <vector>
 
+#include "flexura/base/table.h"
+#include "flexura/experiment/experiment.h"
 #include "flexura/experiment/run.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/rig/rehearsal.h"

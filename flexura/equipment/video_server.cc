@@ -6,6 +6,7 @@
 #include <gst/rtsp-server/rtsp-server.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -185,7 +186,13 @@ RtspServer::~RtspServer() {
   };
   for (const double end = steady_seconds() + patience; is_any_watched() && steady_seconds() < end;)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  g_main_loop_quit(loop_);
+  // A loop that has not begun yet would not notice a call from here.
+  GSource* quit = g_idle_source_new();
+  g_source_set_callback(
+      quit, [](gpointer loop) { return g_main_loop_quit(static_cast<GMainLoop*>(loop)), gboolean{FALSE}; },
+      loop_, nullptr);
+  g_source_attach(quit, context_);
+  g_source_unref(quit);
   thread_.join();
   server_.reset();
   g_main_loop_unref(loop_);

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 
 #include "flexura/equipment/wall_clock.h"
 #include "flexura/model/backbone.h"
+#include "flexura/rig/rig.h"
 #include "tests/support/laboratory.h"
 #include "tests/support/rehearsals.h"
 
@@ -51,7 +53,7 @@ TEST(Rehearsal, ShowsThePicturesOfTheSimulatedRig) {
   Rehearsal rehearsal(experiment);
   ArmState state = ArmState::straight(1);
   state.bends[0] = {0.7, -0.4};
-  const HeadState head{0.05, -0.03, 1 + 9.0 * 100 / 0x4000};
+  const HeadState head{0.05, -0.03, 9.0 / 0x4000 * 2000};
 
   const Experiment in_laboratory = on_devices_of(rehearsal, experiment);
   const std::unique_ptr<Rig> real = rig_of(in_laboratory);

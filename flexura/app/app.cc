@@ -23,6 +23,7 @@
 #include "flexura/app/identify.h"
 #include "flexura/app/jog.h"
 #include "flexura/app/new_experiment.h"
+#include "flexura/app/rehearse.h"
 #include "flexura/app/view.h"
 #include "flexura/base/node.h"
 #include "flexura/base/one_line.h"
@@ -177,6 +178,33 @@ void add_jog(CLI::App& app, Command& chosen) {
   jog->add_flag("--json", arguments->json, "Print one JSON document");
   jog->callback([&chosen, arguments] {
     chosen = [arguments] { return jog_command(*arguments, std::cout, std::cerr); };
+  });
+}
+
+void add_rehearse(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<RehearseArguments>();
+  CLI::App* rehearse = add_command(
+      app, "rehearse", command_group::experiments,
+      "Simulate an experiment's equipment: its motors, heads and cameras behind their protocols",
+      "flexura rehearse experiment.toml\nflexura run experiment-rehearsal.toml    (in another terminal)");
+  add_experiment_argument(*rehearse, arguments->experiment);
+  rehearse
+      ->add_option("--out", arguments->out,
+                   "Copy of the file to write, with the table [rig] (default: NAME-rehearsal.toml)")
+      ->type_name("FILE");
+  rehearse->add_option("--video", arguments->video, "Encoding of the cameras' videos (default: raw)")
+      ->type_name("raw|jpeg|h264")
+      ->check(CLI::IsMember({"raw", "jpeg", "h264"}).description(""));
+  rehearse->add_option("--quality", arguments->server.quality, "Quality of JPEG, 1 to 100 (default: 90)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100).description(""));
+  rehearse
+      ->add_option("--port", arguments->server.port, "Port of the cameras' videos (default: any free port)")
+      ->type_name("N")
+      ->check(CLI::Range(std::uint16_t{0}, std::uint16_t{65535}).description(""));
+  add_set_option(*rehearse, arguments->sets);
+  rehearse->callback([&chosen, arguments] {
+    chosen = [arguments] { return rehearse_command(*arguments, std::cout, std::cerr); };
   });
 }
 
@@ -371,6 +399,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_view(app, chosen);
   add_check(app, chosen);
   add_run(app, chosen);
+  add_rehearse(app, chosen);
   add_compare(app, chosen);
   add_export(app, chosen);
   add_devices(app, chosen);

@@ -229,6 +229,16 @@ HeadState visca_state(const ViscaConfig& config, const ViscaCounts& counts) {
           on_line(known, config.zoom.positions.value_or(known), static_cast<double>(counts.zoom))};
 }
 
+HeadConfig with_visca_resolution(HeadConfig head, const ViscaConfig& config) {
+  const auto raise = [](double& resolution, double step) { resolution = std::max(resolution, step); };
+  raise(head.pan.resolution, degree / std::abs(config.pan.counts_per_degree));
+  raise(head.tilt.resolution, degree / std::abs(config.tilt.counts_per_degree));
+  const std::vector<double> counts = zoom_counts(config.zoom), zooms = config.zoom.positions.value_or(counts);
+  for (std::size_t i = 1; i < counts.size(); ++i)
+    raise(head.zoom.resolution, (zooms[i] - zooms[i - 1]) / (counts[i] - counts[i - 1]));
+  return head;
+}
+
 StopMessages visca_stop(const ViscaConfig& config) {
   const int address = static_cast<int>(config.address);
   const std::string stop_turn = visca_packet(

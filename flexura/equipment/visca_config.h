@@ -94,6 +94,9 @@ struct ViscaCounts {
 /// Returns the state at these counts, also outside the limits.
 [[nodiscard]] HeadState visca_state(const ViscaConfig& config, const ViscaCounts& counts);
 
+/// Returns a model of the head whose axes have no finer resolution than the head's counts.
+[[nodiscard]] HeadConfig with_visca_resolution(HeadConfig head, const ViscaConfig& config);
+
 /// Returns the messages that stop a head (Guard).
 [[nodiscard]] StopMessages visca_stop(const ViscaConfig& config);
 

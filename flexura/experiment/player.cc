@@ -149,12 +149,22 @@ void Player::step(double time, const ArmState& state) {
   if (step_ % static_cast<std::size_t>(experiment_.record.every) == 0 || step_ == schedule_.steps()) {
     run_recorder_.state(step_, time, state);
     report_tasks(time);
-    if (is_rig_played()) run_recorder_.readings(*rig_);
+    if (is_rig_played() && is_reading_due(time)) run_recorder_.readings(*rig_);
   }
   run_recorder_.command(time, state);
   notify_watcher(time, state);
   ++step_;
   played_ = {step_, time, state, false, ""};
+}
+
+// Real devices take their time to answer. A run that is late must not become later by its log.
+bool Player::is_reading_due(double time) {
+  if (rig_->is_simulated()) return true;
+  constexpr double longest = 0.5;  // s, without readings
+  const double now = rig_->ports().clock->now();
+  if (now - time > experiment_.clock.step && now - last_reading_ < longest) return false;
+  last_reading_ = now;
+  return true;
 }
 
 void Player::notify_watcher(double time, const ArmState& state) {

@@ -58,6 +58,7 @@ class Player {
   void plan(double from);
   void publish_up_to(double time);
   void step(double time, const ArmState& state);
+  [[nodiscard]] bool is_reading_due(double time);
   [[nodiscard]] bool is_rig_played() const;
   void play_to(double time, const ArmState& state);
   void notify_watcher(double time, const ArmState& state);
@@ -85,6 +86,7 @@ class Player {
   NominalRig nominal_;
   std::size_t step_ = 0;  // Next step.
   Played played_;
+  double last_reading_ = 0;  // Rig's time at which real devices were read for the log, s.
 };
 
 }  // namespace flexura

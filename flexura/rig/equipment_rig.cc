@@ -22,26 +22,40 @@ T must(Outcome<T> outcome) {
   return std::move(outcome).value();
 }
 
-// The head of a camera, with times on the rig's clock.
+// The head of a camera, with times on the rig's clock. An answer takes tens of milliseconds, so a head that
+// stands is not asked each time.
 class RigHead : public HeadPort {
  public:
   // `time_shift`, s, is added to the times of readings.
   RigHead(std::unique_ptr<HeadPort> head, double time_shift)
       : head_(std::move(head)), time_shift_(time_shift) {}
   ~RigHead() override { (void)head_->halt(); }
-  CommandOutcome command(const HeadState& state) override { return head_->command(state); }
-  CommandOutcome halt() override { return head_->halt(); }
+  CommandOutcome command(const HeadState& state) override {
+    standing_.reset();
+    return head_->command(state);
+  }
+  CommandOutcome halt() override {
+    standing_.reset();
+    return head_->halt();
+  }
   Outcome<HeadReading> read() override {
+    constexpr double fresh = 0.2;  // s
+    const double now = steady_seconds();
+    if (standing_ && now - asked_ < fresh) return *standing_;
+    standing_.reset();
     auto taken = head_->read();
     if (!taken) return taken;
     HeadReading reading = taken.value();
     reading.time += time_shift_;
+    if (!reading.moving) standing_ = reading, asked_ = now;
     return reading;
   }
 
  private:
   std::unique_ptr<HeadPort> head_;
   double time_shift_;
+  std::optional<HeadReading> standing_;  // The last reading, if the head stood.
+  double asked_ = 0;
 };
 
 // The devices of a camera.
@@ -52,6 +66,12 @@ struct CameraDevices {
   std::optional<ClockedCamera> camera;
   std::unique_ptr<RigHead> head;  // Null if the camera has none.
 };
+
+// Returns the age of a picture that arrives as quickly as the model says: from the middle of its exposure on.
+double youngest_age(const SensorConfig& sensor) {
+  const FrameTimes times = frame_times(sensor, 0);
+  return times.received - times.middle;
+}
 
 class EquipmentRig : public Rig {
  public:
@@ -73,7 +93,7 @@ class EquipmentRig : public Rig {
       devices->name = cameras[i].name;
       if (heads[i]) devices->head = std::make_unique<RigHead>(std::move(heads[i]), time_shift);
       devices->source = open_camera_source(devices_of(cameras[i]), cameras[i], *clock_);
-      devices->camera.emplace(*devices->source, devices->time, 0.0);
+      devices->camera.emplace(*devices->source, devices->time, youngest_age(cameras[i].sensor));
       cameras_.push_back(std::move(devices));
     }
   }

@@ -36,6 +36,8 @@ class Filming : public Rig, private RigTruth {
   /// time. If a frame begins at `start`, the exposure is that of the frame.
   [[nodiscard]] Shot shot(std::size_t camera, double start);
   [[nodiscard]] Picture take(const Shot& shot) { return photographers_[shot.camera]->take(shot); }
+  /// Returns the simulated rig.
+  [[nodiscard]] SimulatedRig& simulation() { return *rig_; }
   /// Returns the simulated rig in its present state. The rig remains usable without this object, but must not
   /// be asked for frames. This object can then only be destroyed.
   [[nodiscard]] std::unique_ptr<SimulatedRig> give_away() { return std::move(rig_); }

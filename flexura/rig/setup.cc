@@ -145,6 +145,17 @@ StandConfig Setup::true_stand() const {
 }
 
 std::vector<CameraConfig> Setup::cameras() const {
+  std::vector<CameraConfig> all = modelled_cameras();
+  if (!equipment) return all;
+  for (CameraConfig& one : all) {
+    const auto found = std::ranges::find(equipment->camera, one.name, &CameraEquipment::name);
+    if (found != equipment->camera.end() && found->visca)
+      one.head = with_visca_resolution(one.head, *found->visca);
+  }
+  return all;
+}
+
+std::vector<CameraConfig> Setup::modelled_cameras() const {
   if (!camera.empty()) return camera;
   if (stand.camera_distances) return cameras_at(*stand.camera_distances, arm.base.position);
   double reach = 0;

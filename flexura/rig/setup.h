@@ -73,8 +73,12 @@ struct Setup {
   [[nodiscard]] StandConfig true_stand() const;
 
   /// Returns the cameras of the file, or the paper's two cameras if the file has none. These are at the
-  /// stand's distances, or at distances that show the arm's whole reach.
+  /// stand's distances, or at distances that show the arm's whole reach. A VISCA head of the equipment cannot
+  /// be commanded between its counts, so its model's resolution is not finer.
   [[nodiscard]] std::vector<CameraConfig> cameras() const;
+
+ private:
+  [[nodiscard]] std::vector<CameraConfig> modelled_cameras() const;
 };
 
 const std::vector<std::string>& names_of(const CurveKind*);

@@ -55,6 +55,8 @@ class SimulatedCamera : public CameraPort {
   [[nodiscard]] std::vector<Frame> all_new();
   /// Returns whether all_new() would return a frame.
   [[nodiscard]] bool has_new() const;
+  /// Returns whether a frame is lost on its way. Callable in any thread.
+  [[nodiscard]] bool is_lost(std::int64_t frame) const;
   /// Skips all frames available now.
   void skip_to_now() { next_ = last_received(clock_->now()) + 1; }
 
@@ -62,7 +64,6 @@ class SimulatedCamera : public CameraPort {
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:
-  [[nodiscard]] bool is_lost(std::int64_t frame) const;
   [[nodiscard]] std::int64_t last_received(double time) const;
   [[nodiscard]] Frame take(std::int64_t number);
 

@@ -321,7 +321,7 @@ TEST_F(Estimate, SaysThatCamerasAreForPicturesOfAnotherSize) {
 TEST_F(Estimate, SaysThatAPictureIsGivenTwice) {
   arguments_.images[1] = arguments_.images[0];
   const Node found = answer(exit_done);
-  EXPECT_NE(write_json(*found.find("notes")).find("pictures 1 and 2 are the same"), std::string::npos);
+  EXPECT_NE(write_json(*found.find("notes")).find("pictures 1 and 2 are identical"), std::string::npos);
   EXPECT_FALSE(*found.find("trusted")->as<bool>());
 }
 

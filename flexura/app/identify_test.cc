@@ -215,7 +215,7 @@ TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
   };
   refuses("nowhere",
           "nowhere: no such file: expected a folder made by `flexura run`, a log (.mcap), or measured");
-  refuses(folder_.path().string(), "holds no log.mcap");
+  refuses(folder_.path().string(), "has no log.mcap");
   refuses(written("text.mcap", "no log at all, but text that is long enough"), "text.mcap");
   const std::string log = read_text_file(results() + "/log.mcap", 1 << 28);
   refuses(written("cut.mcap", log.substr(0, 300)), "has no true arm states");

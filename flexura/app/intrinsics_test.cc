@@ -218,7 +218,7 @@ TEST_F(IntrinsicsCommand, DoesNotTakeForAZoomWhatDoesNotZoom) {
     (void)photograph(name + "/", 260);
     arguments_.zooms.push_back(fmt::format("{}={}", name == "one" ? 1 : 2, path(name)));
   }
-  EXPECT_THAT(*answer(exit_missed).find("reason")->as<std::string>(), HasSubstr("rising"));
+  EXPECT_THAT(*answer(exit_missed).find("reason")->as<std::string>(), HasSubstr("increase from row to row"));
 }
 
 TEST_F(IntrinsicsCommand, SaysAtWhichZoomNoCameraIsFound) {
@@ -342,7 +342,7 @@ TEST_F(IntrinsicsCommand, RefusesNumbersThatItCannotUse) {
   for (const char* zoom : {"", "1", "1=", "=a", "@=a", "0=a", "-1=a", "nan=a", "1@x=a"})
     refuses("--zoom", [&](auto& a) { a.images = {}, a.zooms = {zoom, "2=b"}; });
   refuses("--zoom", [](auto& a) { a.images = {}, a.zooms = {"1=a", "2@5=b"}; });
-  refuses("no folder", [](auto& a) { a.images = {}, a.zooms = {"1=a", "2=b"}; });
+  refuses("cannot be read", [](auto& a) { a.images = {}, a.zooms = {"1=a", "2=b"}; });
 }
 
 TEST_F(IntrinsicsCommand, PrintsAShortTableUnlessAskedForJson) {

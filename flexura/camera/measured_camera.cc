@@ -31,7 +31,7 @@ Eigen::Matrix3d matrix_of(const Rows& rows) {
 
 void check_measured_camera(const MeasuredCamera& camera, Reader& reader) {
   if (camera.rotation.error() > largest_error) {
-    reader.problem_at("rotation", fmt::format("rotation: not a rotation (error {:.2g}): expected the rows of "
+    reader.problem_at("rotation", fmt::format("not a rotation (error {:.2g}): expected the rows of "
                                               "a rotation matrix or a quaternion [w, x, y, z] of norm 1",
                                               camera.rotation.error()));
   }

@@ -61,6 +61,7 @@ struct OnvifChunk {
 /// moves its head in time. It needs no thread and no clock of its own.
 class OnvifDevice {
  public:
+  /// A camera whose head is at pan 0 and tilt 0, with the smallest zoom.
   explicit OnvifDevice(OnvifModel model = {});
 
   /// Returns the properties; they may be changed.
@@ -72,6 +73,7 @@ class OnvifDevice {
 
   /// Returns the position at time `now`, generic.
   [[nodiscard]] OnvifPlace place(double now) const;
+  /// Returns whether the head moves at time `now`, s.
   [[nodiscard]] bool is_moving(double now) const;
   /// Blocks the axes where they are, as an obstacle does, or releases them.
   void block(bool is_blocked, double now);
@@ -111,6 +113,7 @@ class OnvifDevice {
 /// One connection to a simulated camera.
 class OnvifStream {
  public:
+  /// A connection to `device`, which must outlive it.
   explicit OnvifStream(OnvifDevice& device) : device_(device), reader_(HttpReader::Side::requests) {}
   /// Takes bytes that arrive at time `now`. Returns what the camera sends for them.
   std::vector<OnvifChunk> receive(std::string_view bytes, double now);

@@ -91,9 +91,9 @@ TEST(VideoServer, LosesNoValueOfRawPictures) {
       const auto& picture = std::get<Image<std::uint8_t>>(*frame.picture);
       const unsigned number = number_of(picture);
       EXPECT_EQ(picture, numbered_noise(camera, number));
-      // The stamps are those of the pictures, within the resolution of RTP.
+      // The stamps are those of the pictures; the receiver converts them between two clocks.
       const double zero = frame.time - number / camera.sensor.frame_rate;
-      EXPECT_NEAR(zero, first.value_or(zero), 1e-4);
+      EXPECT_NEAR(zero, first.value_or(zero), 5e-3);
       if (!first) first = zero;
     });
   }

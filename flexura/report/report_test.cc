@@ -425,7 +425,7 @@ TEST(ReportHtml, StaysSmallForLongRunsAndSaysSo) {
   for (const char* part : {"<dd>E(-10.738, 5.201)</dd>", "<dd>16.000 m</dd>", "<dd>5.000 s</dd>"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
   EXPECT_NE(html.find("of the 100001 recorded states"), std::string::npos);
-  EXPECT_NE(html.find("The first 1000 of 5000 events"), std::string::npos);
+  EXPECT_NE(html.find("the first 1000 of 5000 events"), std::string::npos);
 }
 
 TEST(ReportHtml, ShowsARunOfOneState) {

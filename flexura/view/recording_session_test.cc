@@ -421,9 +421,9 @@ TEST_F(RecordingSessionTest, RefusesWhatIsNoRecording) {
     }
     return std::string("no error");
   };
-  EXPECT_THAT(error(), HasSubstr("holds no experiment.toml"));
+  EXPECT_THAT(error(), HasSubstr("has no experiment.toml"));
   std::ofstream(folder_.path() / experiment_file_name) << viewed_text;
-  EXPECT_THAT(error(), HasSubstr("holds no log.mcap"));
+  EXPECT_THAT(error(), HasSubstr("has no log.mcap"));
   std::ofstream(folder_.path() / log_file_name) << "";
   EXPECT_THAT(error(), HasSubstr("has no state"));
   std::ofstream(folder_.path() / log_file_name) << "this is no log at all, is it";

@@ -216,7 +216,7 @@ TEST_F(FoldedPicture, SaysThatPixelsHaveNoRay) {
 TEST_F(ThickerArm, IsFoundWithAWordOnItsRadius) {
   const ViewAnswer answer = ask(ShapeRequest{});
   ASSERT_TRUE(*answer.result.find("found")->as<bool>()) << *answer.result.find("reason")->as<std::string>();
-  EXPECT_THAT(write_json(*answer.result.find("notes")), HasSubstr("show an arm of 0.026 m radius"));
+  EXPECT_THAT(write_json(*answer.result.find("notes")), HasSubstr("show an arm with a radius of 0.026 m"));
 }
 
 }  // namespace

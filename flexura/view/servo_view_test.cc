@@ -152,7 +152,7 @@ TEST_F(ServoView, TellsHowItGoesAndHowItEnds) {
   }
   EXPECT_THAT(events, ElementsAre("servo starts", "there", "hold starts", "done"));
   EXPECT_GT(progress.size(), 5) << "how far it is off";
-  EXPECT_THAT(progress, ::testing::Contains(HasSubstr("bow: 0.")));
+  EXPECT_THAT(progress, ::testing::Contains(HasSubstr("bow: error 0.")));
 }
 
 TEST_F(ServoView, IsInTheRecordingUponItsPictures) {

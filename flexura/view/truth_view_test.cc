@@ -80,7 +80,7 @@ TEST_F(TruthView, ShowsARodBesideTheCommandedArcs) {
   EXPECT_EQ(*ghost.find("color")->as<std::string>(), true_arm.color);
   EXPECT_EQ(ghost.find("poses")->as<Node::Array>()->size(), 49U);
   EXPECT_EQ(*end.find("title")->as<std::string>(), "Truth");
-  EXPECT_THAT(*end.find("text")->as<std::string>(), HasSubstr("mm from the commanded shape"));
+  EXPECT_THAT(*end.find("text")->as<std::string>(), HasSubstr("distance from the commanded shape"));
   LiveRig live(viewed_rig(viewed_rod()), 0);
   const Eigen::Vector3d rod = live.at_rest(bent).tip().position;
   EXPECT_LT((tip_of_last(end) - rod).norm(), 1e-4);

@@ -312,7 +312,8 @@ initial = { pan = 0.02 }
   viewer.advance(0.4);
   EXPECT_NEAR(messenger.state(me).arm.bends[0].x(), 0.8 + 0.05, 1e-6);
   viewer.on_message(me, R"({"id":6,"do":"branch","time":1})");
-  EXPECT_THAT(*messenger.last(me, "reply").find("error")->as<std::string>(), HasSubstr("no recording"));
+  EXPECT_THAT(*messenger.last(me, "reply").find("error")->as<std::string>(),
+              HasSubstr("expected a recording"));
 }
 
 TEST(ViewerOfARig, GivesChecksAndSavesTheTextOfItsExperiment) {

@@ -205,7 +205,7 @@ TEST(BadDynamicFiles, EachGetsALineWithPlaceValueAndExpectation) {
   EXPECT_EQ(error_of_file(moving_with("radius = 0.02\n", "radius = 0.02\nstretch_limits = [1, 2]\n")),
             "no error");
   EXPECT_THAT(error_of_file(moving_with("until = 2", "until = 0.5")),
-              HasSubstr("arm.payload[0].until: is not after from"));
+              HasSubstr("arm.payload[0].until: is not after `from`"));
   EXPECT_THAT(error_of_file(moving_with("section = 1\nmass", "section = 2\nmass")),
               HasSubstr("arm.payload[0].section: 2: expected a section of the arm, 1 to 1"));
   EXPECT_THAT(error_of_file(moving_with("friction = 0.4", "stiffness = 0")),

@@ -161,7 +161,7 @@ int study(int cases, std::uint64_t seed) {
   std::printf(
       "\nWith noise 2 and PSF 0.7, %zu bands are visible. %zu bands were found, %zu of them false, and also "
       "%zu false spots. The distance of a band from the backbone's image at the band's middle has a median "
-      "of %.3f px; 90 %% are within %.2f px, and %.2f %% are beyond 4 sigma.\n",
+      "of %.3f px. Of the distances, 90 %% are within %.2f px, and %.2f %% are beyond 4 sigma.\n",
       banded.markers_shown, banded.markers, banded.false_markers, banded.spots, banded.marker.size(0.5),
       banded.marker.size(0.9), 100 * banded.marker_by_sigma.share_beyond(4));
   return 0;

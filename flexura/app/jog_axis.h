@@ -45,8 +45,8 @@ struct ArmJog {
 };
 /// Returns the jog of a motor, a tendon or a section by `distance` (jog_distance) from the arm's initial
 /// shape, as slow as the limits of the file need. Adds to `refusals` why it would harm the robot, one line
-/// each: what the safety check finds, a tendon that pulls too far against the others, and positions beyond
-/// the limits of the motors' controllers.
+/// each. Reasons are what the safety check finds, a tendon that pulls too far against the others, and
+/// positions beyond the limits of the motors' controllers.
 [[nodiscard]] ArmJog plan_arm_jog(const Experiment& experiment, const JogAxis& axis, double distance,
                                   std::vector<std::string>& refusals);
 

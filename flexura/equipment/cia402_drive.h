@@ -114,9 +114,9 @@ class Cia402Drive : public DrivePort {
   std::atomic<unsigned> halts_ = 0;
 };
 
-/// Returns the frames that stop the drives: a quick stop of every node by SDO and, as far as there is place,
-/// by RPDO 1 and SYNC; then, after `delay` s, the NMT command "stop" to all nodes. The drives hold their
-/// positions if start() has set them up. After that, start() must be called again.
+/// Returns the frames that stop the drives. The first are a quick stop of every node by SDO and, as far as
+/// there is place, by RPDO 1 and SYNC. Then, after `delay` s, follows the NMT command "stop" to all nodes.
+/// The drives hold their positions if start() has set them up. After that, start() must be called again.
 [[nodiscard]] StopMessages cia402_stop(const Cia402Config& config, double delay = 0.2);
 
 }  // namespace flexura

@@ -38,7 +38,7 @@ class Cia402Ramp {
   double next_position_ = 0, next_velocity_ = 0;
 };
 
-/// Returns the speed, > 0, at which an axis goes `distance` in `duration` s and stops there, if it starts
+/// Returns the speed, > 0, at which an axis goes `distance` in `duration` s and stops there. The axis starts
 /// with `velocity`, positive towards the target, and accelerates and brakes by `acceleration`. Returns `most`
 /// if the duration is too short, and never more.
 [[nodiscard]] double cia402_speed(double distance, double velocity, double duration, double acceleration,

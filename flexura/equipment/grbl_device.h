@@ -30,9 +30,14 @@ struct GrblDeviceConfig {
 
 /// The far side of GrblDrive: a stepper controller with its motors, as Grbl 1.1 and grblHAL behave.
 ///
-/// Supported: the `$` commands except `$SD` files; G0 G1 G4 G10 (L2 L20) G17-G21 G28 G30 G40 G49 G53-G59 G80
-/// G90 G91 G92 G93 G94 and all M words; feed hold, resume, reset, jog cancel; soft and hard limits; homing of
-/// all axes at once. Arcs and probing are refused as error:20. Other realtime bytes are ignored.
+/// Supported:
+/// - the `$` commands except `$SD` files
+/// - G0 G1 G4 G10 (L2 L20) G17-G21 G28 G30 G40 G49 G53-G59 G80 G90 G91 G92 G93 G94 and all M words
+/// - feed hold, resume, reset, jog cancel
+/// - soft and hard limits
+/// - homing of all axes at once
+///
+/// Arcs and probing are refused as error:20. Other realtime bytes are ignored.
 class GrblDevice : public ServedDevice {
  public:
   /// Throws std::invalid_argument if a number of values differs from that of the axes.

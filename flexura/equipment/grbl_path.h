@@ -38,8 +38,8 @@ class GrblPath {
   void add(std::vector<std::int64_t> target, double feed, double now);
   /// Returns the estimated time until the last target is reached, without the time of braking, s; 0 at rest.
   [[nodiscard]] double lag(double now) const;
-  /// Returns true if a controller that moves may be at this position, steps, at time `now`: within
-  /// `tolerance` steps of the way, not behind an earlier report, and not further than it can go.
+  /// Returns true if a controller that moves may be at this position, steps, at time `now`. The position must
+  /// be within `tolerance` steps of the way, not behind an earlier report, and not further than it can go.
   [[nodiscard]] bool can_be_at(std::span<const std::int64_t> position, double tolerance, double now) const;
   /// Takes a position that can be, as reported at time `now` or later.
   void report(std::span<const std::int64_t> position, double now);

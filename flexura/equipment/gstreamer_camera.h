@@ -38,10 +38,10 @@ const Table<GStreamerConfig>& fields_of(const GStreamerConfig*);
 /// Starts a camera on a pipeline. The frames have the size and the channels of `camera.sensor`, with 8 bits
 /// per value; a stream of another size is a fault. The connection is made, and made again, in the background.
 ///
-/// Frame::time is the stream's time stamp. That of an RTSP stream is on the camera's clock: over TCP it is as
-/// sent, over UDP from the camera's first report of its time (RTCP sender report) on, and before on this
-/// machine's monotonic clock. Use ClockedCamera for times on the rig's clock. Frame::exposure is that of
-/// `camera.sensor`.
+/// Frame::time is the stream's time stamp. That of an RTSP stream is on the camera's clock. Over TCP it is as
+/// sent. Over UDP it is on this clock from the camera's first report of its time (RTCP sender report) on, and
+/// before on this machine's monotonic clock. Use ClockedCamera for times on the rig's clock. Frame::exposure
+/// is that of `camera.sensor`.
 ///
 /// `clock` must outlive the camera. Refuses a sensor with more than 8 bits, and every camera if the program
 /// was built without GStreamer.

@@ -55,8 +55,8 @@ class VideoServer {
 /// Returns whether this program was built with a video server.
 [[nodiscard]] bool has_video_server();
 
-/// Starts a server. Throws std::runtime_error with one clear line if it cannot run: the program was built
-/// without it, the port is taken, a plug-in of GStreamer is missing, or JPEG does not have this size.
+/// Starts a server. Throws std::runtime_error with one clear line if it cannot run. Reasons: The program was
+/// built without it, the port is taken, a plug-in of GStreamer is missing, or JPEG does not have this size.
 [[nodiscard]] std::unique_ptr<VideoServer> open_video_server(std::vector<VideoStream> streams,
                                                              const VideoServerConfig& config);
 

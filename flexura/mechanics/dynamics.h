@@ -100,9 +100,10 @@ struct RodPayload {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< Before pick-up, in the base's frame, m/s.
 };
 
-/// Number of parameters of each section, in this order: relative changes of its stiffness against shear,
-/// stretch, bends and twist, and of its mass per length, as in EquilibriumSlopes, and of its damping. Damping
-/// does not change with the stiffness. Mass does not include point masses and payloads.
+/// Number of parameters of each section. They are relative changes, in this order: of its stiffness against
+/// shear, stretch, bends and twist, of its mass per length, and of its damping. All but the last are as in
+/// EquilibriumSlopes. Damping does not change with the stiffness. Mass does not include point masses and
+/// payloads.
 inline constexpr Eigen::Index dynamics_parameters = 6;
 
 /// Derivatives of a rod's motion, p = M(q) v and dp/dt = f(q, v, input). All matrices have a row for each

@@ -47,8 +47,8 @@ struct Equilibrium {
   /// Whether other equilibria were detected: the path branched or turned, or the rod descended to another
   /// equilibrium.
   bool ambiguous = false;
-  /// Section whose strain modes are too few for the bend between its guide disks, as far as the modes show:
-  /// its tip may be wrong by more than 1e-3 of the rod's length.
+  /// Section whose strain modes are too few for the bend between its guide disks, as far as the modes show.
+  /// Its tip may be wrong by more than 1e-3 of the rod's length.
   std::optional<std::size_t> coarse_section = {};
   int iterations = 0;                  ///< Number of linear systems solved.
   Eigen::VectorXd q;                   ///< The strain modes (RodChain).

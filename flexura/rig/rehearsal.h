@@ -19,9 +19,9 @@ struct RehearsedPictures {
   std::int64_t skipped = 0;  ///< Pictures that were not rendered, because the machine is too slow.
 };
 
-/// The simulated rig of an experiment behind simulated devices, in real time: stepper controllers that speak
-/// Grbl on pseudoterminals, heads that speak VISCA over UDP, and cameras that serve video over RTSP. A
-/// program that runs the experiment on this equipment needs no hardware.
+/// The simulated rig of an experiment behind simulated devices, in real time. The devices are stepper
+/// controllers that speak Grbl on pseudoterminals, heads that speak VISCA over UDP, and cameras that serve
+/// video over RTSP. A program that runs the experiment on this equipment needs no hardware.
 class Rehearsal {
  public:
   /// Starts the devices. The world is that of `setup`, including [truth]; a table [rig] is ignored. Throws

@@ -4,7 +4,7 @@
 usage: tidy.py --build BUILD [--all]
 
 BUILD holds a compile_commands.json. tools/tidy_record.txt, committed, holds digests of the sources' code, without
-comments, for which clang-tidy last passed. Without --all, the product's sources (.cc) that differ from the record are
+comments and words of string literals, for which clang-tidy last passed. Without --all, the product's sources (.cc) that differ from the record are
 checked. With --all every source is checked, including tests and benchmarks. That also shows the effects of a changed
 header on the sources that include it. The record is updated for each source of the product that passes, with its
 digest from before the check.
@@ -70,19 +70,25 @@ def key(command, files):
     return digest.hexdigest()
 
 
-def without_comments(text):
-    """Returns the code without comments and repeated white space; clang-tidy reads only NOLINT comments."""
-    def kept(token):
-        is_comment = token[0].startswith(("//", "/*"))
-        return " " if is_comment and "NOLINT" not in token[0] else token[0]
+def essential_code(text):
+    """Returns the code without comments, words of string literals, and spaces beside punctuation.
 
-    return " ".join(TOKEN.sub(kept, text).split())
+    clang-tidy reads only NOLINT comments, and its findings do not depend on the words of messages.
+    """
+    def kept(token):
+        if token[0].startswith(("//", "/*")):
+            return token[0] if "NOLINT" in token[0] else " "
+        line = text[text.rfind("\n", 0, token.start()) + 1:token.start()]
+        return token[0] if re.fullmatch(r"\s*#\s*include\s*", line) else '""'
+
+    code = re.sub(r"\s*([^\w\s])\s*", r"\1", " ".join(TOKEN.sub(kept, text).split()))
+    return re.sub(r'(?:"")+', '""', code)
 
 
 def digests(files):
     """Returns the first 16 hex digits of the SHA-256 of each file's code, by the file's path in the project."""
     names = sorted(str(file.relative_to(ROOT)) for file in files)
-    codes = [without_comments((ROOT / name).read_text()) for name in names]
+    codes = [essential_code((ROOT / name).read_text()) for name in names]
     return {name: hashlib.sha256(code.encode()).hexdigest()[:16] for name, code in zip(names, codes)}
 
 

@@ -78,7 +78,8 @@ class Process : public GuardWatch {
     if (one.socket >= 0) ::close(one.socket);
     one = {::socket(stop.address.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0),
            seconds_now() + most_connection, false, &stop};
-    (void)::connect(one.socket, reinterpret_cast<const sockaddr*>(&stop.address), stop.address_size);
+    [[maybe_unused]] const int begun =  // It goes on while this process does other things.
+        ::connect(one.socket, reinterpret_cast<const sockaddr*>(&stop.address), stop.address_size);
   }
 
   // Returns the time at which a connection is given up, s; HUGE_VAL: there is none.

@@ -11,9 +11,9 @@ namespace {
 
 // Returns an element with the prefixes of a service: tds, trt or tptz.
 std::string answer_element(std::string_view prefix, std::string_view name, std::string_view inside) {
-  const std::string_view names = prefix == "tds"   ? "http://www.onvif.org/ver10/device/wsdl"
-                                 : prefix == "trt" ? "http://www.onvif.org/ver10/media/wsdl"
-                                                   : "http://www.onvif.org/ver20/ptz/wsdl";
+  std::string_view names = "http://www.onvif.org/ver20/ptz/wsdl";
+  if (prefix == "tds") names = "http://www.onvif.org/ver10/device/wsdl";
+  if (prefix == "trt") names = "http://www.onvif.org/ver10/media/wsdl";
   return fmt::format(
       "<{0}:{1}Response xmlns:{0}=\"{2}\" "
       "xmlns:tt=\"http://www.onvif.org/ver10/schema\">{3}</{0}:{1}Response>",

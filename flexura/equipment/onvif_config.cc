@@ -165,8 +165,8 @@ std::string onvif_problem(const OnvifConfig& config) {
   if (!config.path.starts_with('/') ||
       !std::ranges::all_of(config.path, [](char c) { return c > ' ' && c < '\x7f'; }))
     return "path: expected a path such as /onvif/device_service";
-  if (config.speed && !(*config.speed > 0 && *config.speed <= 1))
-    return "speed: expected more than 0, at most 1";
+  const auto is_share = [](double value) { return value > 0 && value <= 1; };
+  if (config.speed && !is_share(*config.speed)) return "speed: expected more than 0, at most 1";
   if (!onvif_timeout_range.contains(config.reply_timeout))
     return "reply_timeout: expected more than 0 s, at most 30 s";
   if (config.tries < 1 || config.tries > 20) return "tries: expected 1 to 20";

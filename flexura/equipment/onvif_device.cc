@@ -117,7 +117,7 @@ std::vector<OnvifChunk> OnvifDevice::answer(const HttpMessage& request, double n
 
 std::optional<OnvifDevice::Reply> OnvifDevice::login_fault(const OnvifRequest& request, double now) {
   if (model_.user.empty()) return std::nullopt;
-  const Reply refused{400, soap_fault("NotAuthorized", "Sender not authorized")};
+  Reply refused{400, soap_fault("NotAuthorized", "Sender not authorized")};
   if (!request.token) return refused;
   const OnvifToken& token = *request.token;
   const auto created = parse_onvif_time(token.created);

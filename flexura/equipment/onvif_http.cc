@@ -16,7 +16,7 @@ namespace {
 namespace http = boost::beast::http;
 
 constexpr std::uint32_t most_header = 16 * 1024;
-constexpr std::uint64_t most_body = 1024 * 1024;
+constexpr std::uint64_t most_body = 1024UL * 1024;
 
 template <class Parser>
 void set_limits(Parser& parser) {
@@ -107,7 +107,7 @@ class HttpReader::Parser {
       made.method = method, made.target = target;
       return made;
     }
-    Reply& reply = std::get<Reply>(parser_);
+    auto& reply = std::get<Reply>(parser_);
     const bool is_delimited = reply.chunked() || reply.content_length().has_value();
     auto message = reply.release();
     const auto status = static_cast<int>(message.result_int());

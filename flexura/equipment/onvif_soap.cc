@@ -82,8 +82,8 @@ std::optional<double> utc_seconds(int year, int month, int day, int hour, int mi
   const year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
                             std::chrono::day(static_cast<unsigned>(day))};
   if (year < 1970 || year > 9999 || month < 0 || day < 0 || !date.ok()) return std::nullopt;
-  if (hour < 0 || hour > 23 || minute < 0 || minute > 59 || !(second >= 0 && second < 61))
-    return std::nullopt;
+  const bool is_second = second >= 0 && second < 61;  // False if it is not a number.
+  if (hour < 0 || hour > 23 || minute < 0 || minute > 59 || !is_second) return std::nullopt;
   const auto days = std::chrono::sys_days(date).time_since_epoch().count();
   return 86400.0 * static_cast<double>(days) + 3600.0 * hour + 60.0 * minute + second;
 }
@@ -272,7 +272,7 @@ std::optional<SoapFault> parse_soap_fault(std::string_view soap) {
   std::string_view code = text_of(child(fault, "faultcode"));
   constexpr int most_codes = 8;
   pugi::xml_node one = child(fault, "Code");
-  for (int i = 0; one && i < most_codes; one = child(one, "Subcode"), ++i)
+  for (int i = 0; !one.empty() && i < most_codes; one = child(one, "Subcode"), ++i)
     if (const std::string_view value = text_of(child(one, "Value")); !value.empty()) code = value;
   found.code = code.substr(code.rfind(':') + 1);
   const std::string_view reason = text_of(child(fault, "Reason", "Text"));

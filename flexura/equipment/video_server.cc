@@ -42,7 +42,8 @@ const std::map<std::string, std::string>& encoders(VideoEncoding encoding) {
                                                           {"rtpjpegpay", "gstreamer1.0-plugins-good"}};
   static const std::map<std::string, std::string> h264 = {{"openh264enc", "gstreamer1.0-plugins-bad"},
                                                           {"rtph264pay", "gstreamer1.0-plugins-good"}};
-  return encoding == VideoEncoding::raw ? raw : encoding == VideoEncoding::jpeg ? jpeg : h264;
+  if (encoding == VideoEncoding::raw) return raw;
+  return encoding == VideoEncoding::jpeg ? jpeg : h264;
 }
 
 void check_video(const VideoStream& stream, const VideoServerConfig& config) {

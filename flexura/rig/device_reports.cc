@@ -20,6 +20,7 @@ namespace {
 // Text of numbers, one per axis; of equal numbers, one.
 std::string numbers_text(const std::vector<double>& numbers, std::string_view unit) {
   std::vector<std::string> all;
+  all.reserve(numbers.size());
   for (const double number : numbers) all.push_back(fmt::format("{:.6g}", number));
   if (std::ranges::adjacent_find(all, std::ranges::not_equal_to()) == all.end() && !all.empty())
     all.resize(1);

@@ -64,7 +64,7 @@ double arm_value(const JogAxis& axis, const Drive& drive, const ArmReading& read
   if (axis.kind == JogAxis::Kind::motor) return static_cast<double>(reading.positions.at(axis.index));
   if (axis.kind == JogAxis::Kind::section) return bend_in(reading.state, axis);
   const Axis& motor = drive.axes.at(axis.index);
-  const double position = static_cast<double>(reading.positions.at(axis.index));
+  const auto position = static_cast<double>(reading.positions.at(axis.index));
   return (motor.reversed ? -position : position) / motor.microsteps_a_metre();
 }
 
@@ -121,7 +121,9 @@ double& head_value(HeadState& state, const JogAxis& axis) {
 // Returns why a head must not go to a position, or "".
 std::string head_refusal(const CameraConfig& camera, const CameraEquipment& devices, const JogAxis& axis,
                          HeadState target) {
-  const std::size_t which = axis.kind == JogAxis::Kind::pan ? 0 : axis.kind == JogAxis::Kind::tilt ? 1 : 2;
+  std::size_t which = 2;
+  if (axis.kind == JogAxis::Kind::pan) which = 0;
+  if (axis.kind == JogAxis::Kind::tilt) which = 1;
   const AxisConfig limits = Camera(camera).head_axes().at(which);
   const double wanted = head_value(target, axis);
   const auto outside = [&](double low, double high, std::string_view whose) {

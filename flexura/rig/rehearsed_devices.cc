@@ -85,7 +85,8 @@ class HeadMotors : public ViscaMotors {
  private:
   [[nodiscard]] ViscaCounts counts() const { return visca_counts(config_, world_.head(camera_).state); }
   static std::int64_t& place(ViscaCounts& counts, Axis axis) {
-    return axis == pan ? counts.pan : axis == tilt ? counts.tilt : counts.zoom;
+    if (axis == pan) return counts.pan;
+    return axis == tilt ? counts.tilt : counts.zoom;
   }
 
   RehearsedWorld& world_;

@@ -28,7 +28,7 @@ describe.skipIf(!program)('a servo', () => {
     await legend().waitFor();
     await until(async () => (await legend().getByRole('button').count()) === 4, 15000, 'not all shapes came');
     for (const label of ['Target', 'Seen', 'True', 'Features']) expect(await eye(label).getAttribute('aria-pressed')).toBe('true');
-    await until(async () => /sway: [\d.]+ % of the length off/.test((await page.locator('.running-text').textContent()) ?? ''), 15000, 'no word');
+    await until(async () => /sway: error [\d.]+ % of the length/.test((await page.locator('.running-text').textContent()) ?? ''), 15000, 'no word');
   });
 
   test('the axis as measured and the wanted shape lie upon both pictures, each with its eye', async () => {

@@ -31,7 +31,7 @@ struct JogAxis {
 /// Returns the names of all axes of an experiment with equipment: "motor.1", "tendon.1", "section.1.x",
 /// "front.pan".
 [[nodiscard]] std::vector<std::string> jog_axis_names(const Experiment& experiment);
-/// Returns the axis with this name. Throws InputError, with all names, if there is none.
+/// Returns the axis with this name. Throws InputError, with all names, if the name is unknown.
 [[nodiscard]] JogAxis jog_axis(const Experiment& experiment, const std::string& name);
 /// Returns the distance in `text`, a number with or without the axis's unit ("5", "5mm", "-2 deg"), in the
 /// program's unit. Throws InputError for anything else, a number that is not finite, and 0.

@@ -47,7 +47,7 @@ struct MissingDriver {
 /// answers, or why nothing does.
 ///
 /// Opening a serial line resets many boards (DTR), which stops their motors, and the bytes may mean something
-/// else to a device of another kind. Throws std::invalid_argument if `address` is none.
+/// else to a device of another kind. Throws std::invalid_argument if `address` is not an address.
 [[nodiscard]] std::string probe_link(const std::string& address, ClockPort& clock);
 
 }  // namespace flexura

@@ -23,7 +23,7 @@ struct StopMessages {
 
 struct GuardMessage;
 
-/// Stops devices if it is not told in time that the program works.
+/// Stops devices if the program does not report in time that it works.
 class Watchdog {
  public:
   virtual ~Watchdog() = default;

@@ -82,7 +82,7 @@ class Process : public GuardWatch {
         ::connect(one.socket, reinterpret_cast<const sockaddr*>(&stop.address), stop.address_size);
   }
 
-  // Returns the time at which a connection is given up, s; HUGE_VAL: there is none.
+  // Returns the time at which a connection is given up, s; HUGE_VAL without a connection.
   [[nodiscard]] double next_timeout() const noexcept {
     double next = HUGE_VAL;
     for (const Connection& one : connection_)

@@ -106,7 +106,7 @@ TEST(OnvifSoap, AnswersAreReadAsWritten) {
   EXPECT_EQ(status->error, "");
 }
 
-// Of other cameras: other prefixes, SOAP 1.1 faults, numbers that are none, nothing at all.
+// Of other cameras: other prefixes, SOAP 1.1 faults, invalid numbers, empty answers.
 TEST(OnvifSoap, ReadsOtherSpellingsAndRefusesNumbersThatAreNone) {
   const auto old = parse_soap_fault(
       "<SOAP-ENV:Envelope><SOAP-ENV:Body><SOAP-ENV:Fault><faultcode>SOAP-ENV:Client</faultcode>"

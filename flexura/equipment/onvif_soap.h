@@ -117,7 +117,7 @@ struct OnvifRequest {
   std::optional<double> speed, timeout;  ///< Share of the highest speed; s.
   bool stops_turn = true, stops_zoom = true;
 };
-/// Reads a request; std::nullopt if the message is none.
+/// Reads a request; std::nullopt if the message is not a request.
 [[nodiscard]] std::optional<OnvifRequest> parse_onvif_request(std::string_view soap);
 
 }  // namespace flexura

@@ -123,7 +123,7 @@ void check_names(const RigEquipment& equipment, const std::vector<std::string>& 
       reader.problem_at("rig.camera", fmt::format("no devices for the camera \"{}\"", name));
 }
 
-// Returns what tells links apart: a serial line is the same at any speed.
+// Returns the part of an address that identifies the link: the speed of a serial line does not matter.
 std::string place_of_link(const std::string& link) {
   try {
     const LinkAddress address = parse_link_address(link);

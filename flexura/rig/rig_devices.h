@@ -40,7 +40,7 @@ class ArmEquipment {
   [[nodiscard]] DrivePort& drive() { return *drive_; }
   /// Returns the single controllers, in the order of the axes; empty for drives on a CAN bus.
   [[nodiscard]] const std::vector<std::unique_ptr<GrblDrive>>& controllers() const { return grbl_; }
-  /// Returns the drives on a CAN bus; null if there are none.
+  /// Returns the drives on a CAN bus; null without such drives.
   [[nodiscard]] const Cia402Drive* bus() const { return can_ ? &*can_ : nullptr; }
   /// Returns the motor positions at which the arm has its initial shape, microsteps.
   [[nodiscard]] const std::vector<double>& rest() const { return rest_; }

@@ -126,7 +126,7 @@ int edge_in(const Frame& frame) {
   return -1;
 }
 
-// vivid moves its picture by a constant step with each frame, delivered or not. This tells a frame's number
+// vivid moves its picture by a constant step with each frame, delivered or not. This shows a frame's number
 // independently of the sequence numbers.
 class MovingVivid : public Vivid {
  protected:

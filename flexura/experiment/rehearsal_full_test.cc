@@ -1,6 +1,7 @@
 // The whole example of a rehearsal: cameras are calibrated with the arm, and a servo steers it, on the
 // simulated rig and through the protocols of equipment.
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -116,15 +117,16 @@ Rehearsed run_rehearsed(const Experiment& experiment, const VideoServerConfig& v
   Rehearsal rehearsal(experiment, video);
   Rehearsed result = run(on_devices_of(rehearsal, experiment), [&](Rig&) { return rehearsal.backbone(); });
   EXPECT_EQ(rehearsal.failure(), "");
-  // A step of the servo that comes late bends the arm faster than the file allows, which the check after the
-  // run finds (docs/equipment/rehearsal.md). On a busy machine steps come late.
-  EXPECT_TRUE(result.outcome == RunOutcome::done || result.outcome == RunOutcome::unsafe) << result.text;
+  EXPECT_EQ(result.outcome, RunOutcome::done) << result.text;
   for (std::size_t i = 0; i < experiment.camera.size(); ++i)
     std::printf("%s: %ld pictures sent, %ld skipped\n", experiment.camera[i].name.c_str(),
                 static_cast<long>(rehearsal.pictures(i).sent),
                 static_cast<long>(rehearsal.pictures(i).skipped));
   return result;
 }
+
+// Equal but for rounding: devices report counts.
+bool is_same(double a, double b) { return std::abs(a - b) < 1e-12; }
 
 // Root mean square distance of the markers in the looks that both runs took from the same places, px.
 double marker_distance(const Rehearsed& a, const Rehearsed& b, std::size_t& looks) {
@@ -133,8 +135,8 @@ double marker_distance(const Rehearsed& a, const Rehearsed& b, std::size_t& look
   looks = 0;
   for (std::size_t i = 0; i < std::min(a.seen.size(), b.seen.size()); ++i) {
     const auto &one = a.seen[i], &other = b.seen[i];
-    if (one.camera != other.camera || one.pan != other.pan || one.tilt != other.tilt ||
-        one.zoom != other.zoom || one.bends != other.bends)
+    if (one.camera != other.camera || !is_same(one.pan, other.pan) || !is_same(one.tilt, other.tilt) ||
+        !is_same(one.zoom, other.zoom) || one.bends != other.bends)
       break;
     ++looks;
     for (const MarkerMessage& marker : one.markers)
@@ -156,30 +158,43 @@ TEST(RehearsedExample, EqualsTheSimulatedRigUncompressed) {
               simulated.text.c_str(), raw.text.c_str(), looks, raw.seen.size(), distance);
   std::printf("true arm off its target: simulated %.4f %%, raw %.4f %% of the length\n", 100 * simulated.rms,
               100 * raw.rms);
-  // The first three looks of both cameras are from the same places, and show the same to the bit.
-  EXPECT_GE(looks, 6U);
+  // A calibration takes pictures at rest, so that the links' delay changes nothing: all is equal to the bit.
+  EXPECT_EQ(looks, 12U);
+  EXPECT_EQ(raw.seen.size(), 12U);
   EXPECT_EQ(distance, 0);
-  // Both servos end below their tolerance as seen; the rest is the error of the calibration.
-  constexpr double tolerance = 0.003, calibration = 0.002;
-  EXPECT_LT(simulated.rms, tolerance + calibration);
-  EXPECT_LT(raw.rms, tolerance + calibration);
+  EXPECT_THAT(simulated.text, ::testing::StartsWith(raw.text.substr(0, raw.text.find('\n'))));
+  // Both servos have equal calibrations. The one through the links takes longer, and ends elsewhere within
+  // the tolerance around the shape that looks like the target.
+  constexpr double tolerance = 0.003;
+  EXPECT_NEAR(raw.rms, simulated.rms, tolerance);
 }
 
-TEST(RehearsedExample, HasTheErrorOfCompressedPictures) {
-  if (!has_video_server()) GTEST_SKIP() << "built without a video server";
+// Runs the example over compressed video. Its pictures differ, so that the runs part after some looks.
+void expect_small_errors(VideoEncoding encoding, const char* name) {
   const Experiment experiment = quiet_example();
   const Rehearsed simulated = run_simulated(experiment);
-  const Rehearsed jpeg = run_rehearsed(experiment, {.encoding = VideoEncoding::jpeg});
+  const Rehearsed compressed = run_rehearsed(experiment, {.encoding = encoding});
   std::size_t looks = 0;
-  const double distance = marker_distance(simulated, jpeg, looks);
-  std::printf("simulated:\n%sJPEG:\n%s%zu of %zu pictures from the same places, markers %.2g px apart\n",
-              simulated.text.c_str(), jpeg.text.c_str(), looks, jpeg.seen.size(), distance);
-  std::printf("true arm off its target: simulated %.4f %%, JPEG %.4f %% of the length\n", 100 * simulated.rms,
-              100 * jpeg.rms);
+  const double distance = marker_distance(simulated, compressed, looks);
+  std::printf("simulated:\n%s%s:\n%s%zu of %zu pictures from the same places, markers %.2g px apart\n",
+              simulated.text.c_str(), name, compressed.text.c_str(), looks, compressed.seen.size(), distance);
+  std::printf("true arm off its target: simulated %.4f %%, %s %.4f %% of the length\n", 100 * simulated.rms,
+              name, 100 * compressed.rms);
+  // The first three looks of both cameras do not depend on pictures.
   EXPECT_GE(looks, 6U);
   EXPECT_GT(distance, 0);
   EXPECT_LT(distance, 2);
-  EXPECT_LT(jpeg.rms, 0.01);
+  EXPECT_LT(compressed.rms, 0.01);
+}
+
+TEST(RehearsedExample, HasTheErrorOfJpegPictures) {
+  if (!has_video_server()) GTEST_SKIP() << "built without a video server";
+  expect_small_errors(VideoEncoding::jpeg, "JPEG");
+}
+
+TEST(RehearsedExample, HasTheErrorOfH264Pictures) {
+  if (!has_video_server()) GTEST_SKIP() << "built without a video server";
+  expect_small_errors(VideoEncoding::h264, "H.264");
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 // Servos whose devices' clocks stop, go back or run ahead.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -148,6 +150,63 @@ TEST(ServoClocks, ACameraWhoseClockWasOddIsBelievedAgain) {
     EXPECT_EQ(result.missed_steps, 0);
     for (const ServoStep& step : result.steps)
       EXPECT_TRUE(!step.seen_at || (std::isfinite(*step.seen_at) && std::isfinite(step.error->rms)));
+  }
+}
+
+// An arm whose readings take some time, so that commands come late, by a different time at each step. It
+// moves as commanded, each command evenly in its duration.
+class LateArm : public ArmPort {
+ public:
+  LateArm(ArmPort& arm, ClockPort& clock, double latest) : arm_(arm), clock_(clock), latest_(latest) {}
+  Outcome<ArmReading> read() override {
+    constexpr double golden = 0.618033988749895;
+    ++readings_;
+    clock_.wait_until(clock_.now() + latest_ * std::fmod(golden * readings_, 1));
+    return arm_.read();
+  }
+  CommandOutcome command(const ArmState& state, double duration) override {
+    const double now = clock_.now();
+    if (!to_.bends.empty()) {
+      const double part = std::clamp((now - since_) / (until_ - since_), 0.0, 1.0);
+      for (std::size_t i = 0; i < to_.bends.size(); ++i) {
+        const Eigen::Vector2d at = from_.bends[i] + part * (to_.bends[i] - from_.bends[i]);
+        fastest_ = std::max(fastest_, (state.bends[i] - at).norm() / duration);
+        from_.bends[i] = at;
+      }
+    } else {
+      from_ = state;
+    }
+    to_ = state, since_ = now, until_ = now + duration;
+    return arm_.command(state, duration);
+  }
+  CommandOutcome halt() override { return arm_.halt(); }
+  /// Returns the largest commanded bend rate of a section, rad/s.
+  [[nodiscard]] double fastest() const { return fastest_; }
+
+ private:
+  ArmPort& arm_;
+  ClockPort& clock_;
+  double latest_;
+  int readings_ = 0;
+  ArmState from_, to_;
+  double since_ = 0, until_ = 0, fastest_ = 0;
+};
+
+// Late commands delay the arm and do not make it faster. With readings up to 0.12 s late, steps are missed,
+// too.
+TEST(ServoClocks, LateCommandsMoveTheArmNoFaster) {
+  for (const double latest : {0.0, 0.01, 0.025, 0.12}) {
+    ServoBench bench(servo_file(servo_target));
+    RigPorts ports = bench.ports();
+    LateArm arm(*ports.arm, *ports.clock, latest);
+    ports.arm = &arm;
+    ServoNotes notes;
+    const ServoResult result = bench.servo(ports, notes);
+    EXPECT_TRUE(result.is_done) << latest << " s: " << result.reason;
+    EXPECT_EQ(result.missed_steps > 0, latest > 0.05) << latest << " s";
+    constexpr double rate = std::numbers::pi / 2;  // Of the file's sections.
+    EXPECT_LT(arm.fastest(), rate * (1 + 1e-9)) << latest << " s";
+    EXPECT_GT(arm.fastest(), 0.5 * rate) << latest << " s";
   }
 }
 

@@ -54,8 +54,16 @@ ViscaConfig visca_of(const Camera& camera, std::uint16_t port) {
   config.bus.link = fmt::format("udp:127.0.0.1:{}", port);
   config.bus.framing = ViscaFraming::sony;
   set_counts(axes[0], config.pan), set_counts(axes[1], config.tilt);
-  // The zoom of a lens that does not zoom has a range that is not used.
-  const auto [least, most] = axes[2].limits;
+  // A count is a step of the zoom's resolution, if there are not more than VISCA has. The zoom of a lens that
+  // does not zoom has a range that is not used.
+  auto [least, most] = axes[2].limits;
+  if (const double step = axes[2].resolution; step > 0 && most > least) {
+    constexpr double rounding = 1e-6;
+    const double first = std::ceil(least / step - rounding), last = std::floor(most / step + rounding);
+    const auto counts = static_cast<std::int64_t>(std::min(last - first, 1e9));
+    if (counts > 0 && counts <= config.zoom.counts.back())
+      least = first * step, most = last * step, config.zoom.counts = {0, counts};
+  }
   // The simulated motors reach every count.
   config.pan.tolerance = config.tilt.tolerance = config.zoom.tolerance = 0;
   config.zoom.positions = std::vector<double>{least, most > least ? most : least + 1};

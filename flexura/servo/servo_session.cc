@@ -322,8 +322,12 @@ class Session {
     }
   }
 
-  void report_arm(double now, const ArmState& state) {
-    const auto taken = rig_.ports().arm->command(state, config_.step);
+  // Commands the arm. A real clock goes on while a step is computed, so that commands come more or less late.
+  // Each motion therefore begins when the last one ends: none is faster than the limiter allows.
+  void report_arm(const ArmState& state) {
+    const double now = rig_.now(), duration = std::max(arm_until_ - now, 0.0) + config_.step;
+    arm_until_ = now + duration;
+    const auto taken = rig_.ports().arm->command(state, duration);
     if (const auto refused = taken.fault()) {
       // A device that refuses commands may still stop. From then on it is not where the limiter assumes.
       is_deaf_ = true;
@@ -331,13 +335,13 @@ class Session {
       fault("the arm: " + text(*refused));
       return;
     }
-    watcher_.arm_sent(now, state, config_.step);
+    watcher_.arm_sent(now, state, duration);
     sent_before_ = sent_;
     sent_ = state;
   }
 
   void send(double now, ArmState state, ServoStep step) {
-    if (!is_deaf_) report_arm(now, state);
+    if (!is_deaf_) report_arm(state);
     if (step.desired.bends.empty()) step.desired = goals_->at(now - result_.start).state;
     step.sent = std::move(state);
     for (const Section& section : model_.arm.sections) step.lengths.push_back(section.length);
@@ -360,7 +364,8 @@ class Session {
     }
     for (std::size_t i = 0; config_.follow && i < 2; ++i) (void)rig_.camera(i).head->halt();
     // The last command lasts until the time of the next one.
-    rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(++ticks_));
+    rig_.ports().clock->wait_until(
+        std::max(arm_until_, result_.start + config_.step * static_cast<double>(++ticks_)));
   }
 
   const RigModel& model_;
@@ -380,6 +385,7 @@ class Session {
   std::optional<ServoJudge> judge_;
   std::optional<ServoTally> tally_;
   long ticks_ = 0;
+  double arm_until_ = 0;        // Time at which the last commanded motion ends.
   bool is_deaf_ = false;        // The arm has refused a command.
   std::string unseen_because_;  // "" if the newest pictures gave a shape.
   std::optional<LimiterFault> kept_;

@@ -1,4 +1,5 @@
 // The commands with which a laboratory sets up its equipment.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -148,6 +149,30 @@ TEST_F(LaboratoryProgram, DryRunPrintsEveryCommandAndNeedsNoDevice) {
   EXPECT_EQ(run("run " + paper_file + " --dry-run").status, 2) << "a simulated rig sends nothing";
   EXPECT_EQ(run("run lab.toml --dry-run --out there").status, 2);
   EXPECT_EQ(run("run lab.toml --queries").status, 2);
+}
+
+// Cameras are calibrated, and a servo moves the arm: three controllers and two heads.
+TEST_F(LaboratoryProgram, DryRunOfTheWholeExample) {
+  std::string file = read_text_file(checkout_file("examples/17_rehearsal/experiment.toml"), 1 << 20);
+  const std::size_t truth = file.find("# The simulated cameras"), tasks = file.find("[[task]]", truth);
+  ASSERT_NE(tasks, std::string::npos);
+  file.erase(truth, tasks - truth);
+  file += "[rig]\n";
+  for (const char* line : {"/dev/a", "/dev/b", "/dev/c"})
+    file += fmt::format("[[rig.grbl]]\nlink = \"{}\"\n", line);
+  for (const char* camera : {"front", "side"})
+    file += fmt::format(
+        "[[rig.camera]]\nname = \"{0}\"\ngstreamer.source = \"rtsp://none/{0}\"\n"
+        "onvif = {{ link = \"tcp:{0}:80\", user = \"me\", password_file = \"/no/file\", "
+        "zoom = {{ points = [0, 1], positions = [1, 10] }} }}\n",
+        camera);
+  std::ofstream(path("lab.toml")) << file;
+  const Ended ended = run("run lab.toml --dry-run");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  for (const char* line :
+       {"/dev/a  $J=", "/dev/c  $J=", "tcp:front:80  AbsoluteMove pan ", "tcp:side:80  Absolute"})
+    EXPECT_THAT(ended.out, HasSubstr(line));
+  EXPECT_THAT(ended.out, HasSubstr("bow: converged"));
 }
 
 TEST_F(LaboratoryProgram, DryRunOfAnUnsafeMotionSendsNoMotion) {

@@ -8,6 +8,7 @@
 #include "flexura/equipment/grbl_config.h"
 #include "flexura/equipment/guard.h"
 #include "flexura/equipment/link.h"
+#include "flexura/equipment/onvif_config.h"
 #include "flexura/equipment/v4l2_calls.h"
 #include "flexura/equipment/v4l2_head.h"
 #include "flexura/equipment/visca_config.h"
@@ -26,15 +27,17 @@ class DeviceAccess {
 
   /// Returns the clock of drives and heads.
   [[nodiscard]] virtual ClockPort& clock() = 0;
-  /// @{ Open the link of a controller, of a bus of drives, or of a chain of heads.
+  /// @{ Open the link of a controller, of a bus of drives, of a chain of heads, or a connection to an ONVIF
+  /// camera.
   [[nodiscard]] virtual Outcome<std::unique_ptr<Link>> open(const GrblConfig& config) = 0;
   [[nodiscard]] virtual Outcome<std::unique_ptr<Link>> open(const Cia402Config& config) = 0;
   [[nodiscard]] virtual Outcome<std::unique_ptr<Link>> open(const ViscaBusConfig& config) = 0;
+  [[nodiscard]] virtual Outcome<std::unique_ptr<Link>> open(const OnvifConfig& config) = 0;
   /// @}
   /// Returns the system calls for a head of the kernel's video interface.
   [[nodiscard]] virtual std::shared_ptr<V4l2Calls> calls(const V4l2HeadConfig& config) = 0;
-  /// Returns whether drivers may open connections of their own, as ONVIF heads do.
-  [[nodiscard]] virtual bool allows_connections() const { return true; }
+  /// Returns whether devices ask for the logins of the configurations. Simulated ones know none.
+  [[nodiscard]] virtual bool wants_logins() const { return true; }
   /// Returns the guard that stops the devices when this program dies or hangs; null if nothing can move.
   [[nodiscard]] virtual Guard* guard() = 0;
 };
@@ -56,6 +59,9 @@ class RealDevices : public DeviceAccess {
   }
   [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const ViscaBusConfig& config) override {
     return open_link(parse_link_address(config.link));
+  }
+  [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const OnvifConfig& config) override {
+    return open_link(parse_link_address(config.link), config.reply_timeout);
   }
   [[nodiscard]] std::shared_ptr<V4l2Calls> calls(const V4l2HeadConfig& /*config*/) override {
     return v4l2_system_calls();

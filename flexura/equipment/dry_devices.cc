@@ -24,6 +24,46 @@ constexpr double dry_steps_per_mm = 100;
 // mm/min and mm/s^2: above the speeds of any motor, so that the file's durations decide.
 constexpr double dry_rate = 60'000, dry_acceleration = 10'000;
 constexpr double dry_switch = 2e4;  // Distance of the limit switches, microsteps.
+constexpr double travel_time = 4;   // Of a head over its whole range, s.
+
+// One connection to an ONVIF camera.
+class DryOnvif : public ServedDevice {
+ public:
+  explicit DryOnvif(OnvifDevice& camera) : stream_(camera) {}
+  std::vector<std::string> receive(std::string_view bytes, double now) override {
+    std::ranges::move(stream_.receive(bytes, now), std::back_inserter(waiting_));
+    return advance(now);
+  }
+  std::vector<std::string> advance(double now) override {
+    std::vector<std::string> due;
+    for (; !waiting_.empty() && waiting_.front().at <= now; waiting_.pop_front())
+      due.push_back(std::move(waiting_.front().bytes));
+    return due;
+  }
+
+ private:
+  OnvifStream stream_;
+  std::deque<OnvifChunk> waiting_;
+};
+
+// A camera that a configuration fits. It moves in the positions of the configuration alone.
+OnvifModel onvif_model(const OnvifConfig& config) {
+  OnvifModel model;
+  const auto range = [](const std::optional<std::array<double, 2>>& limits, const OnvifRange& own) {
+    return limits ? OnvifRange{std::min(own.min, (*limits)[0]), std::max(own.max, (*limits)[1])} : own;
+  };
+  const bool is_degrees = config.space == OnvifPositions::degrees;
+  model.pan = range(config.pan.limits, is_degrees ? model.pan_degrees : model.pan);
+  model.tilt = range(config.tilt.limits, is_degrees ? model.tilt_degrees : model.tilt);
+  if (is_degrees) model.pan_degrees = model.pan, model.tilt_degrees = model.tilt;
+  model.reports_degrees = is_degrees;
+  model.zoom = {config.zoom.points.front(), config.zoom.points.back()};
+  const auto rate = [](const OnvifRange& all) { return (all.max - all.min) / travel_time; };
+  model.rates = {rate(model.pan), rate(model.tilt), rate(model.zoom)};
+  model.user.clear();
+  model.reply_delay = dry_tick;
+  return model;
+}
 
 }  // namespace
 
@@ -162,8 +202,6 @@ Outcome<std::unique_ptr<Link>> DryDevices::open(const ViscaBusConfig& config) {
       start = visca_counts(*head, i < heads_.size() ? heads_[i] : HeadState{});
     }
     const ViscaCounts &low = model.lowest, &high = model.highest;
-    // The whole travel takes a few seconds.
-    constexpr double travel_time = 4;  // s
     const auto rate = [](std::int64_t from, std::int64_t to) {
       return std::max(1.0, static_cast<double>(to - from) / travel_time);
     };
@@ -176,6 +214,20 @@ Outcome<std::unique_ptr<Link>> DryDevices::open(const ViscaBusConfig& config) {
   return connect(config.link, std::move(chain), [framing, digits](std::string_view bytes) {
     return std::vector{visca_sent(bytes, framing, digits)};
   });
+}
+
+Outcome<std::unique_ptr<Link>> DryDevices::open(const OnvifConfig& config) {
+  std::unique_ptr<OnvifDevice>& camera = onvif_[config.link];
+  if (!camera) {
+    camera = std::make_unique<OnvifDevice>(onvif_model(config));
+    HeadState start;
+    for (std::size_t i = 0; i < equipment_.camera.size() && i < heads_.size(); ++i)
+      if (equipment_.camera[i].onvif && equipment_.camera[i].onvif->link == config.link) start = heads_[i];
+    const OnvifModel& model = camera->model();
+    camera->put(onvif_place(config, {model.pan, model.tilt, true}, start));
+  }
+  return connect(config.link, std::make_unique<DryOnvif>(*camera),
+                 [](std::string_view bytes) { return std::vector{onvif_sent(bytes)}; });
 }
 
 std::shared_ptr<V4l2Calls> DryDevices::calls(const V4l2HeadConfig& config) {
@@ -205,9 +257,12 @@ std::vector<std::string> DryDevices::assumptions() const {
                     "numbers after X, Y, Z and F follow from $100, $110 and $120 of yours",
                     dry_steps_per_mm));
   if (equipment_.cia402) all.emplace_back("CANopen drives are taken to stand where the arm starts");
-  const auto has_head = [](const CameraEquipment& one) { return one.visca || one.v4l2_head; };
+  const auto has_head = [](const CameraEquipment& one) { return one.visca || one.onvif || one.v4l2_head; };
   if (std::ranges::any_of(equipment_.camera, has_head))
     all.emplace_back("heads are taken to stand at the cameras' first positions");
+  if (std::ranges::any_of(equipment_.camera,
+                          [](const CameraEquipment& one) { return one.onvif.has_value(); }))
+    all.emplace_back("requests to ONVIF heads are shown without the login and the media profile");
   return all;
 }
 

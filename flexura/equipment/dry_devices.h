@@ -11,6 +11,7 @@
 #include "flexura/camera/head.h"
 #include "flexura/equipment/device_access.h"
 #include "flexura/equipment/device_server.h"
+#include "flexura/equipment/onvif_device.h"
 #include "flexura/equipment/rig_equipment.h"
 #include "flexura/equipment/sent_text.h"
 
@@ -51,8 +52,9 @@ class DryDevices : public DeviceAccess {
   [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const GrblConfig& config) override;
   [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const Cia402Config& config) override;
   [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const ViscaBusConfig& config) override;
+  [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const OnvifConfig& config) override;
   [[nodiscard]] std::shared_ptr<V4l2Calls> calls(const V4l2HeadConfig& config) override;
-  [[nodiscard]] bool allows_connections() const override { return false; }
+  [[nodiscard]] bool wants_logins() const override { return false; }
   [[nodiscard]] Guard* guard() override { return nullptr; }
 
   /// Returns what the simulated devices assume about the real ones, one sentence each.
@@ -74,6 +76,7 @@ class DryDevices : public DeviceAccess {
   TakeDryMessage take_;
   DryClock clock_;
   std::vector<std::unique_ptr<ServedDevice>> devices_;
+  std::map<std::string, std::unique_ptr<OnvifDevice>> onvif_;  // By their addresses.
 };
 
 }  // namespace flexura

@@ -73,8 +73,11 @@ void GrblPath::add(std::vector<std::int64_t> target, double feed, double now) {
 
 double GrblPath::lag(double now) const { return legs_.empty() ? 0 : std::max(ends_at_ - now, 0.0); }
 
-GrblPath::Place GrblPath::place_of(std::span<const std::int64_t> position) const {
+// Returns the place nearest to a position. Legs may cover each other, as on the way there and back, so places
+// behind the last report count only if there is no other near one.
+GrblPath::Place GrblPath::place_of(std::span<const std::int64_t> position, double tolerance) const {
   Place best{.error = std::numeric_limits<double>::infinity()};
+  bool is_best_ahead = false;
   for (std::size_t k = 0; k < legs_.size(); ++k) {
     const Leg& leg = legs_[k];
     double along = 0;
@@ -89,7 +92,9 @@ GrblPath::Place GrblPath::place_of(std::span<const std::int64_t> position) const
           static_cast<double>(leg.from[i]) + place.share * static_cast<double>(leg.to[i] - leg.from[i]);
       place.error = std::max(place.error, std::abs(static_cast<double>(position[i]) - there));
     }
-    if (place.error < best.error) best = place;
+    const bool is_ahead = place.error <= tolerance && way_to(place) >= -margin_of(tolerance);
+    if (is_ahead != is_best_ahead ? is_ahead : place.error < best.error)
+      best = place, is_best_ahead = is_ahead;
   }
   if (!legs_.empty()) return best;
   best.error = 0;
@@ -106,21 +111,27 @@ double GrblPath::way_to(const Place& place) const {
   return way;
 }
 
+// Returns the way that a tolerance in steps may make up, mm.
+double GrblPath::margin_of(double tolerance) const {
+  double margin = 0;
+  for (const double per_mm : axes_.per_mm) margin = std::max(margin, 2 * tolerance / per_mm);
+  return margin;
+}
+
 bool GrblPath::can_be_at(std::span<const std::int64_t> position, double tolerance, double now) const {
-  const Place place = place_of(position);
+  const Place place = place_of(position, tolerance);
   if (place.error > tolerance) return false;
   if (legs_.empty()) return true;
   const double fastest = std::ranges::max_element(legs_, {}, &Leg::speed)->speed;
-  double margin = 0;
-  for (const double per_mm : axes_.per_mm) margin = std::max(margin, 2 * tolerance / per_mm);
-  const double way = way_to(place);
+  const double way = way_to(place), margin = margin_of(tolerance);
   return way >= -margin && way <= 1.1 * fastest * (now - reported_at_) + margin;
 }
 
 void GrblPath::report(std::span<const std::int64_t> position, double now) {
   reported_at_ = now;
   if (legs_.empty()) return;
-  const Place place = place_of(position);
+  constexpr double rounding = 2;  // Steps.
+  const Place place = place_of(position, rounding);
   legs_.erase(legs_.begin(), legs_.begin() + static_cast<std::ptrdiff_t>(place.leg));
   passed_ = place.share;
   double left = -passed_ * legs_.front().length / legs_.front().speed;

@@ -55,8 +55,9 @@ class GrblPath {
     double error = 0;  // Largest distance from the leg, steps.
   };
   [[nodiscard]] Leg leg_to(std::span<const std::int64_t> target) const;
-  [[nodiscard]] Place place_of(std::span<const std::int64_t> position) const;
+  [[nodiscard]] Place place_of(std::span<const std::int64_t> position, double tolerance) const;
   [[nodiscard]] double way_to(const Place& place) const;
+  [[nodiscard]] double margin_of(double tolerance) const;
 
   GrblAxes axes_;
   std::deque<Leg> legs_;

@@ -50,6 +50,11 @@ OnvifDevice::OnvifDevice(OnvifModel model) : model_(std::move(model)) {
   axes_[2].from = axes_[2].to = model_.zoom.min;
 }
 
+void OnvifDevice::put(const OnvifPlace& place) {
+  const std::array<double, 3> to = {place.pan, place.tilt, place.zoom.value_or(model_.zoom.min)};
+  for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].from = axes_[i].to = to[i];
+}
+
 void OnvifDevice::fail(OnvifFault fault, std::size_t count) { fault_ = fault, faults_left_ = count; }
 
 OnvifPlace OnvifDevice::place(double now) const {

@@ -71,6 +71,8 @@ class OnvifDevice {
   /// Returns what the camera sends for a request at time `now`, s, >= that of the previous call.
   [[nodiscard]] std::vector<OnvifChunk> answer(const HttpMessage& request, double now);
 
+  /// Puts the head at a generic position, at rest.
+  void put(const OnvifPlace& place);
   /// Returns the position at time `now`, generic.
   [[nodiscard]] OnvifPlace place(double now) const;
   /// Returns whether the head moves at time `now`, s.

@@ -276,7 +276,8 @@ Outcome<HeadReading> OnvifHead::read() {
 
 Outcome<std::unique_ptr<OnvifHead>> open_onvif_head(
     const OnvifConfig& config, const ClockPort& clock,
-    std::function<CommandOutcome(const std::string& request)> share_stop) {
+    std::function<CommandOutcome(const std::string& request)> share_stop,
+    std::function<Outcome<std::unique_ptr<Link>>()> connect) {
   std::string password;
   if (!config.password_file.empty()) {
     std::ifstream file(config.password_file);
@@ -285,11 +286,12 @@ Outcome<std::unique_ptr<OnvifHead>> open_onvif_head(
                                                        onvif_name(config), one_line(config.password_file))};
     if (password.ends_with('\r')) password.pop_back();
   }
-  const auto connect = [address = parse_link_address(config.link), timeout = config.reply_timeout] {
-    return open_link(address, timeout);
-  };
-  auto head = std::make_unique<OnvifHead>(OnvifPorts{connect, [&clock] { return clock.now(); }}, config,
-                                          std::move(password));
+  if (!connect)
+    connect = [address = parse_link_address(config.link), timeout = config.reply_timeout] {
+      return open_link(address, timeout);
+    };
+  auto head = std::make_unique<OnvifHead>(OnvifPorts{std::move(connect), [&clock] { return clock.now(); }},
+                                          config, std::move(password));
   head->share_stop(std::move(share_stop));
   if (const auto started = head->start(); !started) return *started.fault();
   return head;

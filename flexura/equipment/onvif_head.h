@@ -98,9 +98,11 @@ class OnvifHead : public HeadPort {
 };
 
 /// Connects to a head and starts it. Reads the password from `password_file`. `share_stop`: see
-/// OnvifHead::share_stop(). `clock` gives the times of readings and must outlive the head.
+/// OnvifHead::share_stop(). `connect` opens a connection to the camera; empty: over the network. `clock`
+/// gives the times of readings and must outlive the head.
 [[nodiscard]] Outcome<std::unique_ptr<OnvifHead>> open_onvif_head(
     const OnvifConfig& config, const ClockPort& clock,
-    std::function<CommandOutcome(const std::string& request)> share_stop = {});
+    std::function<CommandOutcome(const std::string& request)> share_stop = {},
+    std::function<Outcome<std::unique_ptr<Link>>()> connect = {});
 
 }  // namespace flexura

@@ -10,6 +10,8 @@
 
 #include "flexura/equipment/cia402_codec.h"
 #include "flexura/equipment/grbl_codec.h"
+#include "flexura/equipment/onvif_http.h"
+#include "flexura/equipment/onvif_soap.h"
 
 namespace flexura {
 namespace {
@@ -172,6 +174,22 @@ SentText visca_sent(std::string_view bytes, ViscaFraming framing, ViscaDigits di
   const std::string who = request->to == visca_everyone ? "all" : fmt::format("head {}", request->to);
   return {fmt::format("{}  {}{}: {}", hex_of(bytes, " "), who, number, visca_meaning(*request)),
           is_question(request->kind)};
+}
+
+SentText onvif_sent(std::string_view bytes) {
+  HttpReader reader(HttpReader::Side::requests);
+  reader.put(bytes);
+  const std::optional<HttpMessage> message = reader.next();
+  const auto request = message ? parse_onvif_request(message->body) : std::nullopt;
+  if (!request) return {"unknown"};
+  if (request->name.starts_with("Get")) return {request->name + "?", true};
+  std::string text = request->name;
+  const auto add = [&text](const char* name, const std::optional<double>& value) {
+    if (value) text += fmt::format("{} {} {:.6g}", text.find(' ') == text.npos ? "" : ",", name, *value);
+  };
+  add("pan", request->pan), add("tilt", request->tilt), add("zoom", request->zoom);
+  add("speed", request->speed);
+  return {text};
 }
 
 SentText can_sent(std::string_view bytes) {

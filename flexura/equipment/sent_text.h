@@ -21,6 +21,8 @@ struct SentText {
 /// Returns a VISCA packet in hexadecimal digits, with its meaning. `framing`: how it is sent. `digits`: those
 /// of the head's positions.
 [[nodiscard]] SentText visca_sent(std::string_view bytes, ViscaFraming framing, ViscaDigits digits);
+/// Returns the request for an ONVIF camera in an HTTP message, with its positions.
+[[nodiscard]] SentText onvif_sent(std::string_view bytes);
 /// Returns a CAN frame as can-utils print it ("201#0F00"), with its meaning to a drive that Cia402Drive has
 /// set up. `bytes`: as bytes_of() gives them.
 [[nodiscard]] SentText can_sent(std::string_view bytes);

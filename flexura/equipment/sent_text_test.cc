@@ -5,6 +5,8 @@
 
 #include "flexura/equipment/cia402_codec.h"
 #include "flexura/equipment/cia402_sdo.h"
+#include "flexura/equipment/onvif_http.h"
+#include "flexura/equipment/onvif_soap.h"
 
 namespace flexura {
 namespace {
@@ -59,6 +61,20 @@ TEST(SentText, OfCanHasFrameAndMeaning) {
   append(target, static_cast<std::uint32_t>(-1234), 4);
   EXPECT_THAT(can_sent(bytes_of(target)).text, EndsWith("node 5: enable, start, target -1234"));
   EXPECT_THAT(can_sent("short").text, StartsWith("73 68"));
+}
+
+TEST(SentText, OfOnvifHasRequestAndPositions) {
+  const auto sent = [](const std::string& body) {
+    return onvif_sent(http_post("10.0.0.2:80", "/onvif/ptz", soap_message(body), true));
+  };
+  EXPECT_EQ(sent(onvif_move("main", {0.25, -0.5, 0.125}, onvif_generic_space, 0.5)).text,
+            "AbsoluteMove pan 0.25, tilt -0.5, zoom 0.125, speed 0.5");
+  EXPECT_EQ(sent(onvif_move("main", {1, 2, {}}, onvif_degree_space, {})).text, "AbsoluteMove pan 1, tilt 2");
+  EXPECT_EQ(sent(onvif_stop("main")).text, "Stop");
+  EXPECT_FALSE(sent(onvif_stop("main")).asks);
+  EXPECT_EQ(sent(onvif_ask_status("main")).text, "GetStatus?");
+  EXPECT_TRUE(sent(onvif_ask_status("main")).asks);
+  EXPECT_EQ(onvif_sent("GET / HTTP/1.1\r\n\r\n").text, "unknown");
 }
 
 }  // namespace

@@ -28,8 +28,11 @@ constexpr double between_reads = 0.005;  // s
 double sense_of_axis(const Axis& axis) { return axis.reversed ? -1 : 1; }
 
 // The guard stops a head by the newest request, whose signature is that of the last move.
-std::unique_ptr<HeadPort> open_onvif(const OnvifConfig& config, const ClockPort& clock, Guard* guard) {
-  if (guard == nullptr) return value_or_throw(open_onvif_head(config, clock));
+std::unique_ptr<HeadPort> open_onvif(OnvifConfig config, DeviceAccess& access) {
+  if (!access.wants_logins()) config.user.clear(), config.password_file.clear(), config.profile.clear();
+  const auto connect = [&access, config] { return access.open(config); };
+  Guard* const guard = access.guard();
+  if (guard == nullptr) return value_or_throw(open_onvif_head(config, access.clock(), {}, connect));
   const auto share =
       [guard, address = parse_link_address(config.link),
        number = std::optional<std::size_t>()](const std::string& request) mutable -> CommandOutcome {
@@ -45,7 +48,7 @@ std::unique_ptr<HeadPort> open_onvif(const OnvifConfig& config, const ClockPort&
     }
     return Accepted{};
   };
-  return value_or_throw(open_onvif_head(config, clock, share));
+  return value_or_throw(open_onvif_head(config, access.clock(), share, connect));
 }
 
 }  // namespace
@@ -177,12 +180,7 @@ std::unique_ptr<HeadPort> open_head(const CameraEquipment& equipment, DeviceAcce
   if (equipment.v4l2_head)
     return value_or_throw(V4l2Head::open(*equipment.v4l2_head, equipment.name, access.clock(),
                                          access.calls(*equipment.v4l2_head)));
-  if (equipment.onvif) {
-    if (!access.allows_connections())
-      throw std::runtime_error(fmt::format(
-          "the head of camera {}: a dry run cannot show the requests of an ONVIF head", equipment.name));
-    return open_onvif(*equipment.onvif, access.clock(), access.guard());
-  }
+  if (equipment.onvif) return open_onvif(*equipment.onvif, access);
   if (!equipment.visca) return nullptr;
   const ViscaConfig& config = *equipment.visca;
   std::shared_ptr<ViscaBus>& bus = buses[config.bus.link];

@@ -182,33 +182,6 @@ TEST_F(Identify, MarksValuesThatNoMaterialHas) {
 }
 
 // The example's arm with friction in its true tendons, which slide in a long sine.
-TEST_F(Identify, FindsTheFrictionOfTendons) {
-  constexpr double truth = 0.3;
-  std::string text = read_text_file(step_response, 1 << 20);
-  text.resize(text.find("[[task]]"));
-  for (int i = 0; i < 6; ++i) text += fmt::format("[[truth.arm.tendon]]\nfriction = {}\n", truth);
-  text +=
-      "[[task]]\nkind = 'sine'\nperiod = 1.5\nduration = 3\namplitude.bends_deg = [[60, 40], [-50, 60]]\n";
-  const std::string file = written("rubbing.toml", text);
-  const std::vector<std::string> sets = {"record.report=false", "record.scene=false"};
-  Quiet quiet;
-  const std::string motion =
-      run_experiment(load_experiment(file, {sets, {}}), make_new_folder(folder_.path() / "rubbing"), quiet)
-          .folder.string();
-  const auto friction_of = [&](double noise_mm) {
-    const Printed found =
-        printed({.experiment = file, .motion = motion, .noise_mm = noise_mm, .friction = true, .json = true});
-    return json_lines(found.out)[4];
-  };
-  // The file's arm has no friction.
-  const Node found = friction_of(0.2);
-  EXPECT_EQ(*found.find("parameter")->as<std::string>(), "friction");
-  ASSERT_TRUE(*found.find("observable")->as<bool>());
-  EXPECT_EQ(number_in(found, "nominal"), 0);
-  EXPECT_NEAR(number_in(found, "value"), truth, 3 * number_in(found, "sigma"));
-  EXPECT_LT(number_in(found, "sigma"), 0.1 * truth);
-}
-
 TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
   const auto refuses = [&](const std::string& motion, const std::string& what) {
     EXPECT_THAT(refused({.experiment = step_response, .motion = motion}), HasSubstr(what));

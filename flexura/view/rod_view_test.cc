@@ -205,21 +205,5 @@ TEST_F(LaboratoryRod, IsPulledByItsDrive) {
   EXPECT_LT((tip(state) - LiveRig(rig_, 0).at_rest(state.arm).tip().position).norm(), 1e-3);
 }
 
-// Far more friction than the solver can handle (docs/mechanics.md): with large bends it finds no equilibrium.
-class RustyRod : public RodView {
- protected:
-  RustyRod() : RodView(viewed_rod(0.5, 10)) {}
-};
-
-TEST_F(RustyRod, IsPutBackWhereItFindsNoRest) {
-  const int leaps = pass(0.1).leaps;
-  EXPECT_EQ(ask(bends({{-2, 0}, {2, 0}}, 3)).error, "");
-  const StateMessage state = pass(2.5);
-  EXPECT_THAT(last_event(), HasSubstr("everything is reset to the start: at "));
-  EXPECT_EQ(state.leaps, leaps + 1);
-  EXPECT_EQ(state.arm.bends[0].norm(), 0);
-  EXPECT_NEAR(state.time, 2.6, 1e-6) << "time goes on";
-}
-
 }  // namespace
 }  // namespace flexura

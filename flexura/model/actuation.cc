@@ -13,8 +13,8 @@
 namespace flexura {
 namespace {
 
-// Largest number of correction steps from a shape to its command. Each step reduces the error by a factor of
-// about ten.
+// Largest number of correction steps from a shape to its command. The first step reduces the error by a
+// factor of about ten, later ones by more.
 constexpr int max_steps = 20;
 
 // Returns the section's profile. Throws std::invalid_argument if it is invalid.
@@ -107,18 +107,34 @@ ArmState Actuation::command(const ArmState& shape) const {
     command.bends[section_of_[k]] += shape.bends[k];
     command.stretches[section_of_[k]] = shape.stretches[k];
   }
+  // Solves for equal sums of the bends by Broyden's method. The derivative of the sums by the command is near
+  // the identity.
+  const auto count = 2 * static_cast<Eigen::Index>(sections_);
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(count, count);
+  Eigen::VectorXd missed(count), before, change;
   ArmState best = command;
   double least = std::numeric_limits<double>::infinity();
   for (int step = 0; step < max_steps; ++step) {
     const ArmState made = this->shape(command);
-    std::vector<Eigen::Vector2d> missed(sections_, Eigen::Vector2d::Zero());
-    double square = 0;
-    for (std::size_t k = 0; k < arcs(); ++k) missed[section_of_[k]] += shape.bends[k] - made.bends[k];
-    for (const Eigen::Vector2d& bend : missed) square += bend.squaredNorm();
+    missed.setZero();
+    for (std::size_t k = 0; k < arcs(); ++k)
+      missed.segment<2>(2 * static_cast<Eigen::Index>(section_of_[k])) += shape.bends[k] - made.bends[k];
+    const double square = missed.squaredNorm();
     if (square < least) best = command, least = square;
     const bool goes_on = square > 1e-24 && square < 100 * least;
     if (!goes_on) break;
-    for (std::size_t i = 0; i < sections_; ++i) command.bends[i] += missed[i];
+    if (step > 0) {
+      const Eigen::VectorXd predicted = inverse * (before - missed);
+      const double length = change.dot(predicted);
+      // A small or negative part along the last change is of a slack tendon, which Broyden's update would
+      // turn into large steps.
+      if (length > 0.1 * change.squaredNorm())
+        inverse += (change - predicted) * (change.transpose() * inverse) / length;
+    }
+    before = missed;
+    change = inverse * missed;
+    for (std::size_t i = 0; i < sections_; ++i)
+      command.bends[i] += change.segment<2>(2 * static_cast<Eigen::Index>(i));
   }
   return best;
 }

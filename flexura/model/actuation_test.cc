@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -62,6 +64,51 @@ TEST(Actuation, FindsTheCommandOfAShape) {
       EXPECT_NEAR(found.stretches[i], command.stretches[i], 1e-13);
     }
   });
+}
+
+// An arm that sags: each section's bend differs from the command by a part of all bends, and by their
+// squares.
+class SaggingResponse : public ArmResponse {
+ public:
+  SaggingResponse(TestRandom& random, std::size_t sections) : mixing_(2 * sections, 2 * sections) {
+    for (double& part : mixing_.reshaped()) part = random.uniform(-0.08, 0.08);
+  }
+  [[nodiscard]] ArmState shape(const ArmState& command) const override {
+    ++asked;
+    ArmState shape = command;
+    Eigen::VectorXd bends(mixing_.rows());
+    for (std::size_t i = 0; i < command.bends.size(); ++i)
+      bends.segment<2>(2 * static_cast<Eigen::Index>(i)) = command.bends[i];
+    const Eigen::VectorXd sag = mixing_ * bends + 0.02 * bends.cwiseAbs2();
+    for (std::size_t i = 0; i < command.bends.size(); ++i)
+      shape.bends[i] += sag.segment<2>(2 * static_cast<Eigen::Index>(i));
+    return shape;
+  }
+  void slopes(const ArmState&, Eigen::MatrixXd&) const override { ADD_FAILURE() << "not needed"; }
+  mutable int asked = 0;
+
+ private:
+  Eigen::MatrixXd mixing_;
+};
+
+// Each shape costs the equilibrium of a rod: so few steps may be needed.
+TEST(Actuation, FindsTheCommandOfASaggingArmInFewSteps) {
+  int most = 0;
+  for_random_cases(200, [&](TestRandom& random) {
+    const Arm arm = random_arm(random);
+    const auto response = std::make_shared<SaggingResponse>(random, arm.sections.size());
+    const Actuation actuation(arm, response);
+    ArmState command = ArmState::straight(arm.sections.size());
+    for (Eigen::Vector2d& bend : command.bends) bend = {random.uniform(-1, 1), random.uniform(-1, 1)};
+    const ArmState shape = actuation.shape(command);
+    response->asked = 0;
+    const ArmState found = actuation.command(shape);
+    for (std::size_t i = 0; i < arm.sections.size(); ++i)
+      EXPECT_LE((found.bends[i] - command.bends[i]).norm(), 2e-12);
+    most = std::max(most, response->asked);
+  });
+  // Without Broyden's update 20 are not enough.
+  EXPECT_LE(most, 16);
 }
 
 // If no command makes a shape, no other command's shape may be nearer to it.

@@ -1,6 +1,8 @@
 #include "flexura/servo/servo_law.h"
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "flexura/model/arm_difference.h"
@@ -17,6 +19,15 @@ ImageLawGains gains_of(const ServoConfig& config) {
 
 bool is_same(const TargetShape& a, const TargetShape& b) {
   return a.state == b.state && a.offset.size() == b.offset.size() && a.offset == b.offset;
+}
+
+// Whether bends, rad, and stretches differ by rounding alone.
+bool is_equal_but_for_rounding(const ArmState& a, const ArmState& b) {
+  constexpr double rounding = 1e-9;
+  for (std::size_t i = 0; i < a.bends.size(); ++i)
+    if ((a.bends[i] - b.bends[i]).norm() > rounding || std::abs(a.stretches[i] - b.stretches[i]) > rounding)
+      return false;
+  return true;
 }
 
 }  // namespace
@@ -71,7 +82,10 @@ bool ServoLaw::find_error(const Input& input, const TargetShape& desired, Featur
 
 void ServoLaw::go_along(const ArmState& desired, const ArmState& next, ArmState& asked) {
   if (next == desired) return;
-  const ArmState from = actuation_.command(desired), to = actuation_.command(next);
+  // A moving target's next shape is the shape desired at the next step, but for rounding of the time.
+  const bool is_known = next_ && is_equal_but_for_rounding(*next_, desired);
+  const ArmState from = is_known ? next_command_ : actuation_.command(desired), to = actuation_.command(next);
+  next_ = next, next_command_ = to;
   if (response_.is_learned()) {
     pack(to, x_), pack(from, y_);
     y_ = response_.drives_for(x_ - y_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "flexura/control/image_law.h"
 #include "flexura/model/actuation.h"
@@ -58,6 +59,9 @@ class ServoLaw {
   ImageLaw law_;
   DriveResponse response_;
   // Buffers of a step, kept to avoid allocations.
+  // Of the last moving target: its next shape, and the command of that shape.
+  std::optional<ArmState> next_;
+  ArmState next_command_;
   Eigen::VectorXd seen_, desired_, x_, y_;
   ArmState halfway_;
   FeatureError is_, was_;

@@ -15,7 +15,8 @@
 
 namespace flexura {
 
-/// Penetrations up to this depth do not count as contacts. The error of distances is at most half of it.
+/// Penetrations up to this depth do not count as contacts. Computed distances have an error of at most half
+/// this depth.
 inline constexpr double contact_tolerance = 1e-6;  // m.
 
 /// Contacts may remain undecided between two samples if the arm moves by less than this between the samples.

@@ -31,7 +31,8 @@ struct CalibrationArcMessage {
   std::string camera;                        ///< Name of the camera.
   std::string plane;                         ///< "XOY" or "ZOY".
   std::vector<std::array<double, 2>> bends;  ///< Bends of the arm, rad.
-  std::vector<double> rotations;             ///< Rotations of the bends, rad.
+  std::vector<double>
+      rotations;  ///< Rotation of each section's bend direction about the axis of its base, rad.
   /// Motor positions, microsteps; missing for arms without drives.
   std::optional<std::vector<std::int64_t>> positions;
   PoseMessage pose;  ///< Pose of the ideal camera.

@@ -81,7 +81,7 @@ class RodMotion {
   [[nodiscard]] const std::vector<RodInterval<Dual<Number>>>& parts() const { return parts_; }
   /// Whether wrenches at points are coupled to other points.
   [[nodiscard]] bool is_coupled() const { return is_coupled_; }
-  /// Returns the ties between points; clears `ties` first.
+  /// Sets `ties` to the couplings between points (PointTie).
   void find_ties(std::vector<PointTie>& ties) const {
     ties.clear();
     if (is_coupled_) touching_->tie(chosen_, point_motions(), ties);

@@ -63,7 +63,8 @@ struct PointCoupling {
   Matrix6d by_pose = Matrix6d::Zero(), by_twist = Matrix6d::Zero();
 };
 
-/// Coupling of several points. Their relative velocity is the sum of rows[i] times the twist of points[i].
+/// Coupling of several points of a rod by a spring and a damper. The relative velocity of the points is the
+/// sum of rows[i] times the twist of points[i].
 struct PointTie {
   static constexpr std::size_t most = 5;
   std::array<std::size_t, most> points{};  ///< Indices among the chosen points.
@@ -98,7 +99,7 @@ class RodSurroundings {
   /// same point.
   virtual void couple(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                       std::vector<PointCoupling>& /*couplings*/) const {}
-  /// If wrenches are coupled, appends the ties for a step's matrix.
+  /// If wrenches at several points are coupled, appends their couplings, which are terms of a step's matrix.
   virtual void tie(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                    std::vector<PointTie>& /*ties*/) const {}
 };

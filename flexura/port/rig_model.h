@@ -42,7 +42,7 @@ struct RigModel {
   return rig_model(ArmModel(driven), cameras);
 }
 
-/// Axis positions that the head and the stage of one camera report.
+/// Stance of a camera: the axis positions that its head and its stage report at one time.
 struct RigStance {
   std::size_t camera = 0;  ///< Index in RigModel::cameras.
   HeadState head = {};

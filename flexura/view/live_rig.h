@@ -107,8 +107,8 @@ class LiveRig {
 [[nodiscard]] std::vector<ContactSample> contact_samples(const ViewedRig& rig,
                                                          const std::vector<ContactMessage>& contacts);
 
-/// Returns the state message of an arm with the command `state` at `time`, s, with the cameras at `stances`.
-/// If `truth` is not null, it is the shape of the arm.
+/// Returns the state message of an arm with the command `state` at `time`, s, with the axis positions
+/// `stances` of the cameras. If `truth` is not null, it is the shape of the arm.
 [[nodiscard]] StateMessage still_state(const ViewedRig& rig, double time, const ArmState& state,
                                        const std::vector<CameraStance>& stances,
                                        const TrueArm* truth = nullptr);

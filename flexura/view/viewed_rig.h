@@ -74,7 +74,8 @@ class ViewedRig {
   /// Returns the true positions of a camera's head and stage for measured positions, without backlash and
   /// quantisation. Differences between truth and model at the start remain.
   [[nodiscard]] CameraStance stance(std::size_t camera, const CameraReading& reading) const;
-  /// Returns the measured positions of a camera's head and stage for true positions: the inverse of stance().
+  /// Returns the positions that a camera's head and stage report at the true axis positions `stance`. This is
+  /// the inverse of stance().
   [[nodiscard]] CameraReading reading(std::size_t camera, const CameraStance& stance) const;
   /// Returns the camera's view according to its model and measured positions.
   [[nodiscard]] View nominal_view(std::size_t camera, const CameraReading& reading) const;
@@ -82,8 +83,8 @@ class ViewedRig {
 
 using ViewedRigPtr = std::shared_ptr<const ViewedRig>;
 
-/// Returns the sample of a camera at the true position `stance`. Its commanded positions are the measured
-/// positions at `stance`.
+/// Returns the sample of a camera with the true axis positions `stance`. The commanded positions in the
+/// sample are the positions that the head and stage report.
 [[nodiscard]] CameraSample camera_sample(const ViewedRig& rig, std::size_t camera,
                                          const CameraStance& stance);
 

@@ -22,8 +22,8 @@ struct RodMotionSample {
 struct TensionFitConfig {
   std::vector<double> most = {};  ///< Maxima, N, one per tendon, each >= 0; empty: unbounded.
   /// Weight of the effort, the sum of squared tensions, relative to the missing forces; > 0. It selects the
-  /// least effort among tensions that apply the same forces. It changes unique tensions by a relative error
-  /// of about its value.
+  /// tensions of least effort among tensions that apply equal forces. If the tensions are unique, it changes
+  /// them by a relative error of about this weight.
   double effort = 1e-10;
 };
 
@@ -32,10 +32,11 @@ struct TensionFit {
   std::vector<double> tensions;  ///< N, one per tendon, each from 0 to its maximum.
   Eigen::VectorXd desired;       ///< Target generalized forces.
   Eigen::VectorXd missing;       ///< Remaining forces: target minus those of the tensions.
-  /// Energies that the rod would store under the target and the missing forces, J. If no tension helps, both
-  /// are equal.
+  /// Elastic energies that the rod would store under the target forces, and under the missing forces, J. If
+  /// no tension reduces the missing forces, both are equal.
   double desired_energy = 0, missing_energy = 0;
-  /// Whether the tensions would be unique without bounds: the forces of the tendons are linearly independent.
+  /// Whether the tensions would be unique without bounds. This is the case if the forces of the tendons are
+  /// linearly independent.
   bool is_determined = false;
 
   /// Returns the missing part of the target, 0 to 1: the square root of missing_energy / desired_energy.

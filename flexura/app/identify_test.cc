@@ -236,7 +236,7 @@ TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
       HasSubstr("has an arm with its base 0.8 m from the base of the experiment's arm"));
   EXPECT_THAT(
       refused({.experiment = step_response, .motion = results(), .sets = {"arm.section.0.length=0.3"}}),
-      HasSubstr("no shape of the rod comes near to the places"));
+      HasSubstr("no shape of the rod is near the measured places"));
   EXPECT_THAT(
       refused({.experiment = checkout_file("examples/01_paper_arm/experiment.toml"), .motion = results()}),
       HasSubstr("arm.section[0]: has no material"));

@@ -27,7 +27,7 @@ struct CanopenNode {
   Emergency emergency = {};            ///< Last emergency; code 0: none.
 };
 
-/// The program's side of a CANopen bus. It sends frames, and waits for answers with a timeout. Only one
+/// The program's side of a CANopen bus, which sends frames and waits for answers with a timeout. Only one
 /// thread may use it.
 class CanopenBus {
  public:

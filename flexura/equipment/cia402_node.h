@@ -57,8 +57,8 @@ class Cia402Node {
   /// Makes the drive fail with an error code (object 0x603F).
   void fail(std::uint16_t code, double now);
   void set_defect(Cia402Defect defect, double now);
-  /// Restarts the drive as after a loss of power. It loses its configuration, and its position is the initial
-  /// one.
+  /// Restarts the drive as after a loss of power. The drive loses its configuration, and its position is the
+  /// initial one.
   void restart();
 
  private:

@@ -51,7 +51,7 @@ class SdoTransfer {
   std::string data_;
 };
 
-/// The node's side of SDO transfers. It processes one transfer at a time.
+/// The node's side of SDO transfers. An SdoServer processes one transfer at a time.
 class SdoServer {
  public:
   /// Result of reading an object: its bytes, or an abort code.

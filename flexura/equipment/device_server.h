@@ -14,8 +14,8 @@
 
 namespace flexura {
 
-/// A simulated device, which implements the device's side of a protocol. It has neither a thread nor a clock:
-/// the caller passes messages and the time.
+/// A simulated device, which implements the device's side of a protocol. A ServedDevice has neither a thread
+/// nor a clock: the caller passes messages and the time.
 class ServedDevice {
  public:
   virtual ~ServedDevice() = default;

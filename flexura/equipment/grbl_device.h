@@ -51,7 +51,8 @@ class GrblDevice : public ServedDevice {
   /// the time of the previous call. After lost steps or homing, the controller reports other positions.
   std::vector<double> positions(double now);
 
-  /// Restarts the controller as a power cycle or the DTR line does. Its reported positions restart at 0.
+  /// Restarts the controller as a power cycle or the DTR line does. The positions that the controller reports
+  /// restart at 0.
   void restart(double now);
   /// Raises an alarm. The motors stop without braking, and overrun a little. With alarm 2, they do not
   /// overrun.

@@ -16,9 +16,9 @@ struct GrblAxes {
   std::vector<double> accelerations;  ///< Largest accelerations, mm/s^2 ($120).
 };
 
-/// Commanded path of a controller: straight lines between positions, in steps. It contains the part that the
-/// controller has not yet reported as completed. Estimates the remaining duration, and checks whether a
-/// reported position is plausible.
+/// Commanded path of a controller: straight lines between positions, in steps. The path contains only the
+/// part that the controller has not yet reported as completed. Estimates the remaining duration, and checks
+/// whether a reported position is plausible.
 class GrblPath {
  public:
   explicit GrblPath(GrblAxes axes) : axes_(std::move(axes)), end_(axes_.per_mm.size(), 0) {}

@@ -12,7 +12,7 @@
 // What the process that protects devices (Guard) is sent, and what it does.
 namespace flexura {
 
-/// A message to the guarding process. It may carry a descriptor.
+/// A message to the guarding process. Some messages carry a file descriptor.
 struct GuardMessage {
   /// Kinds of messages.
   enum class Kind : std::uint8_t {
@@ -41,8 +41,8 @@ struct GuardMessage {
 /// Answers of the guarding process.
 enum class GuardAnswer : char { ready = 'r', stopped = 's' };
 
-/// Decides which stop messages are sent at which time. It has neither a clock nor sockets, so that tests can
-/// run it in simulated time. Allocates no memory.
+/// Decides which stop messages are sent at which time. A GuardWatch has neither a clock nor sockets, so that
+/// tests can run it in simulated time. Allocates no memory.
 class GuardWatch {
  public:
   /// `period`: longest time between beats while the arm moves, s.

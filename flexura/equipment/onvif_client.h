@@ -19,16 +19,16 @@ struct OnvifPorts {
   std::function<double()> now;                              ///< Steady time, s.
 };
 
-/// Login to a camera, with the time of the camera's clock. It makes the signatures of requests. All functions
-/// may be called from several threads.
+/// Login to a camera, with the time of the camera's clock. An OnvifLogin makes the signatures of requests.
+/// All functions may be called from several threads.
 class OnvifLogin {
  public:
   OnvifLogin(std::string user, std::string password);
 
   /// Stores that the camera's clock shows a time, s since 1970, at the steady time `now`, s.
   void set_clock(double camera_time, double now);
-  /// Returns the signature (token) for one request; std::nullopt without a login. It contains the time of the
-  /// camera's clock.
+  /// Returns the signature (token) for one request; std::nullopt without a login. The token contains the time
+  /// of the camera's clock.
   [[nodiscard]] std::optional<OnvifToken> token(double now) const;
 
  private:

@@ -133,7 +133,8 @@ const Table<OnvifConfig>& fields_of(const OnvifConfig*) {
                    "Unit of the positions that the head receives and reports: generic numbers or degrees."})
           .field("pan", &OnvifConfig::pan, {.meaning = "Pan axis."})
           .field("tilt", &OnvifConfig::tilt, {.meaning = "Tilt axis."})
-          .field("zoom", &OnvifConfig::zoom, {.meaning = "Zoom. It has no effect if the head has no zoom."})
+          .field("zoom", &OnvifConfig::zoom,
+                 {.meaning = "Zoom. This table has no effect if the head has no zoom."})
           .field("speed", &OnvifConfig::speed,
                  {.meaning = "Speed of moves, as a fraction of the highest speed.",
                   .range = above_up_to(0, 1),

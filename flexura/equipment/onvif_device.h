@@ -58,8 +58,9 @@ struct OnvifChunk {
   bool closes = false;  ///< Whether the camera closes the connection after these bytes.
 };
 
-/// A simulated ONVIF camera. It answers requests of the device, media and PTZ services, checks logins, and
-/// simulates the motion of its head. It has neither a thread nor a clock: the caller passes the time.
+/// A simulated ONVIF camera. An OnvifDevice answers requests of the device, media and PTZ services, checks
+/// logins, and simulates the motion of its head. The device has neither a thread nor a clock: the caller
+/// passes the time.
 class OnvifDevice {
  public:
   /// Makes a camera whose head is at pan 0 and tilt 0, with the smallest zoom.

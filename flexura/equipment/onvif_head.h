@@ -32,9 +32,9 @@ class OnvifHead : public HeadPort {
   /// Asks the camera for its time, services, profiles, ranges and the head's position. The head does not
   /// move.
   [[nodiscard]] CommandOutcome start();
-  /// Sets a function `take` that is called at the start and before every move. Its argument is a request with
-  /// a new signature that stops the head (for Guard). The camera refuses this request later if the signature
-  /// is too old. If `take` returns a fault, the head is not moved.
+  /// Sets a function `take` that is called at the start and before every move. The argument of `take` is a
+  /// request with a new signature that stops the head (for Guard). The camera refuses this request later if
+  /// the signature is too old. If `take` returns a fault, the head is not moved.
   void share_stop(std::function<CommandOutcome(const std::string& request)> take) {
     share_stop_ = std::move(take);
   }

@@ -96,8 +96,8 @@ struct OnvifStatus {
   std::string error;                ///< Error text of the head; usually empty.
 };
 
-/// The following functions read SOAP messages. They return std::nullopt if the message is not the answer to
-/// the request. Numbers that are not finite count as missing.
+/// The following functions parse SOAP messages. If a message is not the answer to the request, these
+/// functions return std::nullopt. Numbers that are not finite count as missing.
 [[nodiscard]] std::optional<SoapFault> parse_soap_fault(std::string_view soap);
 [[nodiscard]] std::optional<double> parse_onvif_clock(std::string_view soap);
 /// Reads the answer to onvif_ask_services() or onvif_ask_capabilities().

@@ -20,9 +20,9 @@ struct FakeControl {
   bool is_stuck = false;    ///< Whether the device accepts values without effect.
 };
 
-/// A simulated video device that replaces the system calls. It takes one picture at every wait for a frame.
-/// It needs no clock, because the time stamp of a picture is its sequence number times the frame period. All
-/// functions may be called from several threads.
+/// A simulated video device that replaces the system calls. V4l2Fake takes one picture at every wait for a
+/// frame. A clock is not needed, because the time stamp of a picture is its sequence number times the frame
+/// period. All functions may be called from several threads.
 class V4l2Fake : public V4l2Calls {
  public:
   /// Makes a device "video0" in any folder, with one pixel format (V4L2_PIX_FMT_...) and one image size, px.

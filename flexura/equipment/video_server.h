@@ -20,7 +20,7 @@ enum class VideoEncoding {
 
 /// One video of a server.
 struct VideoStream {
-  std::string name;  ///< Path of the video in the address. It has only characters that addresses allow.
+  std::string name;  ///< Path of the video in the address. The path has only characters that addresses allow.
   int width = 640, height = 480;
   PixelKind pixels = PixelKind::gray;  ///< Pixels. A gray video is sent with three equal colours.
   double frame_rate = 30;              ///< Hz, > 0.

@@ -31,8 +31,8 @@ struct ViscaResult {
   std::string what = {};     ///< Message if the command was lost.
 };
 
-/// A link that one or more VISCA heads share. It sends packets, repeats them if there is no answer, and
-/// assigns each answer to its request.
+/// A link that one or more VISCA heads share. A ViscaBus sends packets, repeats packets without an answer,
+/// and assigns each answer to its request.
 ///
 /// All functions may be called from several threads. A thread that waits for an answer also reads the answers
 /// for all other threads. A wait lasts at most `tries` times `reply_timeout` for each request that waits for
@@ -47,8 +47,8 @@ class ViscaBus {
   /// Prepares the link: numbers the heads of a chain and empties their buffers, or resets sequence numbers.
   [[nodiscard]] CommandOutcome start();
 
-  /// Condition for sending, checked before each try. It is called while the bus is locked, so it must not use
-  /// the bus.
+  /// Condition for sending, checked before each try. The function is called while the bus is locked, so it
+  /// must not use the bus.
   using Condition = std::function<bool()>;
   /// Sends a command to the head at `address`, and waits until the head accepts it. An urgent command does
   /// not wait for other requests.

@@ -13,7 +13,7 @@
 
 namespace flexura {
 
-/// Linear least squares fit of an arm's shape to places along the arm. It finds the change of the arm's
+/// Linear least squares fit of an arm's shape to places along the arm. The fit finds the change of the arm's
 /// variables that moves these places by given displacements, with the least sum of squared errors. An arc
 /// affects the arcs distal of it only by the twist of its end. So the normal equations are eliminated arc by
 /// arc from the tip, and time and memory are linear in the number of arcs. This is the Riccati recursion of

@@ -7,8 +7,8 @@
 namespace flexura {
 
 /// A small linear complementarity problem for x. According to its kind, each component of x is 0, at least 0,
-/// or free. The residual is matrix * x - rhs. It is 0 in free and in positive components. In components of
-/// the kind at_least_0 that are 0, it is at least 0.
+/// or free. The residual is matrix * x - rhs. The residual is 0 in free and in positive components. In
+/// components of the kind at_least_0 that are 0, the residual is at least 0.
 struct Complementary {
   enum class Kind { none, at_least_0, free };
 

@@ -25,8 +25,8 @@ struct ContactPress {
   double force = 0, by_depth = 0, by_rate = 0;
 };
 /// Returns the normal force of K. H. Hunt and F. R. E. Crossley (1975), linear in the depth: k depth (1 +
-/// damping rate). It is smooth at first contact and where it would become attractive. `rate`: rate of the
-/// depth, m/s.
+/// damping rate). This force is smooth at first contact, and where it would become attractive. `rate`: rate
+/// of the depth, m/s.
 [[nodiscard]] ContactPress press(const ContactLaw& law, double depth, double rate);
 
 /// Contact of a body with a ball, whose centre is a point of the rod.
@@ -67,7 +67,7 @@ struct TouchChange {
 [[nodiscard]] TouchChange::Rows force_change(const ContactLaw& law, const Touch& touch, const TouchForce& at,
                                              const TouchChange& change);
 /// Positive semidefinite, symmetric part of the derivative of a contact force with respect to the motion of
-/// the contact point. It consists of spring and damper along the normal, and friction across.
+/// the contact point. A TouchHold consists of spring and damper along the normal, and friction across.
 struct TouchHold {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero(), damping = Eigen::Matrix3d::Zero();
 };

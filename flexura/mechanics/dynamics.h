@@ -58,7 +58,7 @@ struct RodState {
   Eigen::VectorXd momentum;      ///< p = M(q) v.
   std::vector<double> tensions;  ///< Tensions of the last step at the base, N.
   /// Friction forces on the tendons with friction, N. The forces along the first tendon come first, from the
-  /// base on, then those along the next tendon. They are part of the state.
+  /// base on, then those along the next tendon. Friction forces are part of the state.
   std::vector<double> friction;
 
   Eigen::VectorXd rate;   ///< dq/dt of the integrator.
@@ -192,9 +192,9 @@ class RodDynamics {
   [[nodiscard]] RodState drop(const RodState& state, const RodPlace& place, const TendonInput& tendons,
                               const RodLoads& loads);
 
-  /// Advances the state by h seconds. Tendons and loads are constant during the step. They must have the
-  /// values at the time h / (1 + spectral radius) after the start of the step. If the step does not converge,
-  /// the state does not change.
+  /// Advances the state by h seconds. Tendons and loads are constant during the step. Tendons and loads must
+  /// have the values at the time h / (1 + spectral radius) after the start of the step. If the step does not
+  /// converge, the state does not change.
   RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
 
   /// Returns the estimated position error of the tip from the last step, m. 0 before three steps of equal
@@ -226,9 +226,9 @@ class RodDynamics {
   [[nodiscard]] Eigen::VectorXd acceleration(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                              const TendonInput& tendons, const RodLoads& loads);
 
-  /// Returns the generalized forces that tendons or other actuators must apply for the acceleration `a`. They
-  /// do not include the forces of weight, loads, stiffness, damping and surroundings. The cost is linear in
-  /// the number of sections. Throws std::invalid_argument as start().
+  /// Returns the generalized forces that tendons or other actuators must apply for the acceleration `a`. The
+  /// result does not include the forces of weight, loads, stiffness, damping and surroundings. The cost is
+  /// linear in the number of sections. Throws std::invalid_argument as start().
   [[nodiscard]] Eigen::VectorXd needed_forces(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                               const Eigen::VectorXd& a, const RodLoads& loads);
   /// Returns the derivatives of tendon lengths with respect to the modes, tendons x modes. The generalized
@@ -239,10 +239,10 @@ class RodDynamics {
   /// Returns the damping matrix D, modes x modes: the viscous forces are -D v.
   [[nodiscard]] Eigen::MatrixXd damping_matrix() const;
 
-  /// Returns the derivatives at a state. Their cost grows with the square of the number of sections. `slide`
-  /// as in start(). Tensions of tendons of given displacement are computed from the tendon lengths. This is
-  /// inaccurate for stiff tendons. So for a rod at rest, RodState::tensions are used instead if they fit the
-  /// lengths.
+  /// Returns the derivatives at a state. The computing time grows with the square of the number of sections.
+  /// `slide` as in start(). Tensions of tendons of given displacement are computed from the tendon lengths.
+  /// This is inaccurate for stiff tendons. So for a rod at rest, RodState::tensions are used instead if they
+  /// fit the lengths.
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
                                          const RodLoads& loads, const RodSlide* slide = nullptr);
   /// Returns the linearised motion around a state. Cost and errors as slopes(). Also throws

@@ -13,8 +13,8 @@ namespace flexura {
 /// Returns the tendons whose friction coefficient is the parameter.
 [[nodiscard]] std::vector<std::size_t> rubbing_tendons(const Rod& rod, const RodParameter& parameter);
 
-/// A column of the equations of motion at one sample. It consists of the factors of the window's test
-/// function and of its derivative, and of the derivatives of both factors with respect to q and v.
+/// A column of the equations of motion at one sample. Such a column consists of the factors of the window's
+/// test function and of its derivative, and of the derivatives of both factors with respect to q and v.
 /// Derivatives that were not requested are empty.
 struct IdentificationTerm {
   Eigen::VectorXd bump = {}, slope = {};

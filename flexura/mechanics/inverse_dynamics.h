@@ -21,9 +21,9 @@ struct RodMotionSample {
 /// Settings of the tension fit.
 struct TensionFitConfig {
   std::vector<double> most = {};  ///< Maxima, N, one per tendon, each >= 0; empty: unbounded.
-  /// Weight of the effort, the sum of squared tensions, relative to the missing forces; > 0. It selects the
-  /// tensions of least effort among tensions that apply equal forces. If the tensions are unique, it changes
-  /// them by a relative error of about this weight.
+  /// Weight of the effort, the sum of squared tensions, relative to the missing forces; > 0. This weight
+  /// selects the tensions of least effort among tensions that apply equal forces. If the tensions are unique,
+  /// the weight changes them by a relative error of about this weight.
   double effort = 1e-10;
 };
 
@@ -43,10 +43,10 @@ struct TensionFit {
   [[nodiscard]] double residual() const;
 };
 
-/// Returns the tensions that come nearest to the generalized forces `desired` at q. They minimise the missing
-/// energy f^T K^-1 f / 2 with the rod's stiffness K, so forces on stiff strains have little weight. Among
-/// several minima, the one with least effort is returned. Throws std::invalid_argument for lists of wrong
-/// length, numbers that are not finite, or a bound below 0.
+/// Returns the tensions that come nearest to the generalized forces `desired` at q. These tensions minimise
+/// the missing energy f^T K^-1 f / 2, where f are the missing forces and K is the rod's stiffness, so forces
+/// on stiff strains have little weight. Among several minima, the one with least effort is returned. Throws
+/// std::invalid_argument for lists of wrong length, numbers that are not finite, or a bound below 0.
 [[nodiscard]] TensionFit nearest_tensions(RodDynamics& dynamics, const Eigen::VectorXd& q,
                                           const Eigen::VectorXd& desired,
                                           const TensionFitConfig& config = {});

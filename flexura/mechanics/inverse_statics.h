@@ -59,7 +59,8 @@ struct InverseStaticsResult {
   /// Whether the target was reached with a local minimum of the sum of squared tensions.
   bool is_least = false;
   std::vector<double> tensions;  ///< N, each from 0 to its maximum. Empty for bad input.
-  /// Equilibrium under these tensions. Its `displacements` are the lengths that a drive must pull in, m.
+  /// Equilibrium under these tensions. The `displacements` of the equilibrium are the lengths that a drive
+  /// must pull in, m.
   Equilibrium equilibrium;
   double position_error = 0;  ///< Largest error of the tip and all places, m.
   double angle_error = 0;     ///< Error of the target direction or rotation, rad; 0 without one.

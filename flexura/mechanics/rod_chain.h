@@ -78,8 +78,8 @@ class RodChain {
   /// Returns whether a tendon pulled the holes of two guide disks together at the last balance(). Real disks
   /// would touch earlier. Shapes with a larger bend cannot be equilibria.
   [[nodiscard]] bool disks_meet() const;
-  /// Returns minus the work of all loads at the last balance, J; it is 0 for loads at the base's origin. It
-  /// is a potential energy if has_energy().
+  /// Returns minus the work of all loads at the last balance, J; it is 0 for loads at the base's origin. The
+  /// result is a potential energy if has_energy().
   [[nodiscard]] double load_energy(const RodLoads& loads) const;
   /// Returns whether r is the gradient of an energy under these loads. This is the case without moments,
   /// follower loads and friction.

@@ -88,7 +88,7 @@ class RodElement {
   void add_bending();
 
   /// Returns the second derivative of the section's strain energy with respect to its modes, size() x size().
-  /// It does not depend on the shape.
+  /// This derivative does not depend on the shape.
   [[nodiscard]] Eigen::MatrixXd stiffness() const;
   /// Returns minus the work of the loads without moments, J; it is 0 for loads at the base's origin. Requires
   /// the poses. Follower loads have no potential and count as dead loads.

@@ -9,10 +9,10 @@
 
 namespace flexura {
 
-/// One interval of a rod between two nodes. Its relative pose is X = exp(twist). The twist is the Magnus
-/// expansion (math/magnus.h) of the moments of its strain. With T = Dual, whose slopes are the rates of the
-/// moments, results include velocities. The projection of a wrench on the moments then includes the rate of
-/// this projection, which Lagrange's equations need.
+/// One interval of a rod between two nodes. The relative pose of the two nodes is X = exp(twist). The twist
+/// is the Magnus expansion (math/magnus.h) of the moments of its strain. With T = Dual, whose slopes are the
+/// rates of the moments, results include velocities. The projection of a wrench on the moments then includes
+/// the rate of this projection, which Lagrange's equations need.
 template <typename T>
 class RodInterval {
  public:

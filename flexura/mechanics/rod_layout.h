@@ -65,8 +65,8 @@ struct RodLayout {
   RodLayout(const RodChain& chain, bool rotary_inertia);
 
   /// The following functions return the index of the element that contains a place, and the index among all
-  /// nodes of the node at a place. They throw std::invalid_argument for a place outside the rod. The second
-  /// one also throws it if no node is at the place.
+  /// nodes of the node at a place. Both functions throw std::invalid_argument for a place outside the rod.
+  /// node_of() also throws it if no node is at the place.
   [[nodiscard]] std::size_t element_of(const RodPlace& place) const;
   [[nodiscard]] std::size_t node_of(const RodPlace& place) const;
 

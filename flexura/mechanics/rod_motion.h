@@ -111,8 +111,9 @@ class RodMotion {
   /// Call after pull().
   [[nodiscard]] const std::vector<S>& slides() const { return slide_; }
 
-  /// Returns the geometric stiffness of tendons in channels at a node, per metre of rod. It is the second
-  /// derivative of the sum of tensions times tendon lengths, with respect to the strains at the node.
+  /// Returns the geometric stiffness of tendons in channels at a node, per metre of rod. This stiffness is
+  /// the second derivative of the sum of tensions times tendon lengths, with respect to the strains at the
+  /// node.
   [[nodiscard]] Matrix6d tendon_stiffness(const RodLayout::Section& section, std::size_t node,
                                           const double* tensions) const;
 

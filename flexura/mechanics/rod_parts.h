@@ -26,9 +26,9 @@ struct RodPart {
 };
 
 /// Returns the parts of a valid rod, from the base on. A section with 1 to 11 pieces between disks is divided
-/// into these pieces, if StrainModes::by_piece is set and each bend has at least 3 modes. Its curvature can
-/// then follow the straight tendons (docs/mechanics.md). With more than 11 pieces the modes of the whole
-/// section suffice.
+/// into these pieces, if StrainModes::by_piece is set and each bend has at least 3 modes. The curvature of a
+/// divided section can follow the straight tendons (docs/mechanics.md). With more than 11 pieces the modes of
+/// the whole section suffice.
 [[nodiscard]] std::vector<RodPart> parts_of(const Rod& rod);
 
 }  // namespace flexura

@@ -73,8 +73,8 @@ struct PointTie {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero(), damping = Eigen::Matrix3d::Zero();
 };
 
-/// External wrenches on a rod in motion: contact, drag, springs. They act at the rod's nodes and at points
-/// between nodes. Points that are not chosen need no computing time.
+/// External wrenches on a rod in motion: contact, drag, springs. The wrenches act at the rod's nodes and at
+/// points between nodes. Points that are not chosen need no computing time.
 class RodSurroundings {
  public:
   virtual ~RodSurroundings() = default;

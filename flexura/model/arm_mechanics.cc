@@ -127,8 +127,8 @@ const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*) {
           .field("x", &TendonRouteConfig::x, route("x"))
           .field("y", &TendonRouteConfig::y, route("y"))
           .field("compliance", &TendonRouteConfig::compliance,
-                 {.meaning = "Elongation of the tendon per newton of tension, m/N. It affects only commands "
-                             "of tendon displacements.",
+                 {.meaning = "Elongation of the tendon per newton of tension, m/N. The compliance affects "
+                             "only commands of tendon displacements.",
                   .range = between(0, 1e6)})
           .field("friction", &TendonRouteConfig::friction,
                  {.meaning = "Coulomb friction coefficient mu along the tendon. After a total wrap angle "

@@ -194,7 +194,8 @@ const Table<DriveConfig>& fields_of(const DriveConfig*) {
                   .range = between(1, 1e6),
                   .default_text = "none: a continuous channel"})
           .field("axes_per_controller", &DriveConfig::axes_per_controller,
-                 {.meaning = "Motors per controller. It only affects the names of axes in command lists.",
+                 {.meaning =
+                      "Motors per controller. This number only affects the names of axes in command lists.",
                   .range = between(1, 1000)})
           .field("pretension", &DriveConfig::pretension,
                  {.meaning = "Tension of each tendon of an elastic arm if all motors are at position 0 and "

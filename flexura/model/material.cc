@@ -100,11 +100,12 @@ const Table<StiffnessConfig>& fields_of(const StiffnessConfig*) {
 
 const Table<ModesConfig>& fields_of(const ModesConfig*) {
   static const auto table =
-      Table<ModesConfig>("modes",
-                         "Number of polynomials in arc length that represent each strain of a section. 1: "
-                         "constant strain; 0: strain fixed at its rest value. If guide disks divide the "
-                         "section into up to 11 pieces and `bend` is at least 3, each piece has its own "
-                         "polynomials. Their number per piece decreases with the number of pieces.")
+      Table<ModesConfig>(
+          "modes",
+          "Number of polynomials in arc length that represent each strain of a section. 1: constant strain; "
+          "0: strain fixed at its rest value. If guide disks divide the section into up to 11 pieces and "
+          "`bend` is at least 3, each piece has its own polynomials. The number of polynomials per piece "
+          "decreases with the number of pieces.")
           .field("shear", &ModesConfig::shear, modes("each of the two shear strains"))
           .field("stretch", &ModesConfig::stretch, modes("the axial strain"))
           .field("bend", &ModesConfig::bend, modes("each of the two curvatures"))
@@ -146,9 +147,9 @@ const Table<MaterialConfig>& fields_of(const MaterialConfig*) {
                 .default_text = "none: a continuous channel"})
         .field("modes", &MaterialConfig::modes, {.meaning = "Resolution of the strains."})
         .field("nodes", &MaterialConfig::nodes,
-               {.meaning = "Number of quadrature nodes along the section, including both ends. It must be "
-                           "larger than the number of modes of each strain. 0: the program chooses the "
-                           "number according to the modes.",
+               {.meaning = "Number of quadrature nodes along the section, including both ends. The number of "
+                           "nodes must be larger than the number of modes of each strain. 0: the program "
+                           "chooses the number according to the modes.",
                 .range = between(0, 64)})
         .field("mass", &MaterialConfig::mass,
                {.meaning = "Bodies on the section, as tables [[arm.section.material.mass]].",

@@ -106,8 +106,8 @@ const Table<PlaneConfig>& fields_of(const PlaneConfig*) {
       obstacle_table<PlaneConfig>("plane", "A plane that the arm must not pass, such as the ground.")
           .field("point", &PlaneConfig::point, place("A point of the plane.", false))
           .field("normal", &PlaneConfig::normal,
-                 {.meaning =
-                      "Normal of the plane, towards the side where the arm is. Its length must be above 0.",
+                 {.meaning = "Normal of the plane, towards the side where the arm is. The length of the "
+                             "normal must be above 0.",
                   .range = coordinate_range})
           .check([](const PlaneConfig& plane, Reader& reader) {
             if (!(vector(plane.normal).norm() > 0))

@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// Commanded motion of the arm from a start time on. It is linear between the commanded shapes.
+/// Commanded motion of the arm from a start time on. The motion is linear between the commanded shapes.
 class CommandedMotion {
  public:
   CommandedMotion(double start, ArmState state);

@@ -23,7 +23,7 @@ class Filming : public Rig, private RigTruth {
   explicit Filming(const Setup& setup);
   Filming(const Setup& setup, std::size_t threads);
 
-  /// Returns the ports. Their clock shows the time up to which the rig has been advanced.
+  /// Returns the ports. The clock of the ports shows the time up to which the rig has been advanced.
   [[nodiscard]] RigPorts ports() override { return rig_->ports(); }
   [[nodiscard]] RigTruth* truth() override { return this; }
   [[nodiscard]] bool is_simulated() const override { return true; }

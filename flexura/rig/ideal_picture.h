@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// Returns a function that renders the file's arm model in gray and without noise. Its pictures are the
+/// Returns a function that renders the file's arm model in gray and without noise. These pictures are the
 /// paper's ideal images (section 2).
 [[nodiscard]] std::function<Image<std::uint8_t>(const View&, const ArmState&)> ideal_pictures(
     const Setup& setup);

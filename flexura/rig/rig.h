@@ -49,8 +49,8 @@ class RigTruth {
   [[nodiscard]] virtual std::vector<PlantContact> contacts(double /*time*/) { return {}; }
   /// Returns a warning of one line about the arm's state at a recent time, or "".
   [[nodiscard]] virtual std::string warning(double /*time*/) { return {}; }
-  /// Returns the number of microsteps that each motor had lost by a recent time. The controller does not know
-  /// of these. Empty if motors cannot lose microsteps.
+  /// Returns the number of microsteps that each motor had lost by a recent time. Controllers do not notice
+  /// lost microsteps. Empty if motors cannot lose microsteps.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) { return {}; }
 };
 
@@ -85,9 +85,9 @@ using RigFactory = std::function<std::unique_ptr<Rig>(const Setup&)>;
 /// Returns a simulated rig (rig/filming.h).
 [[nodiscard]] std::unique_ptr<Rig> simulated_rig(const Setup& setup);
 
-/// Returns the rig of the equipment in the experiment's table [rig]. It connects to all devices, determines
-/// the motor positions (RigEquipment::start), and starts the process that stops the devices if this program
-/// crashes or hangs (Guard). The destructor stops all devices. The rig's clock shows real time.
+/// Returns the rig of the equipment in the experiment's table [rig]. The function connects to all devices,
+/// determines the motor positions (RigEquipment::start), and starts the process that stops the devices if
+/// this program crashes or hangs (Guard). The destructor stops all devices. The rig's clock shows real time.
 ///
 /// Throws std::runtime_error with one clear line if a device cannot be used, or, later, if a device fails.
 [[nodiscard]] std::unique_ptr<Rig> equipment_rig(const Setup& setup);

@@ -69,8 +69,8 @@ struct Setup {
   [[nodiscard]] RigConfig model_rig() const;
   /// Returns the true rig.
   [[nodiscard]] RigConfig true_rig() const;
-  /// Returns the true surroundings. Their default screens are at the positions that follow from the arm
-  /// model.
+  /// Returns the true surroundings. The positions of default screens follow from the arm model, not from the
+  /// true arm.
   [[nodiscard]] StandConfig true_stand() const;
 
   /// Returns the cameras of the file, or the paper's two cameras if the file has none. The paper's cameras

@@ -16,9 +16,9 @@ struct ShownScene {
   View view;    ///< View of the camera.
 };
 
-/// Writes the true values that belong to the picture of `shown`, which is in the file `image`. They are
-/// computed from the geometry, without sensor effects. Let NAME.png be the name of `image`. The written files
-/// are in the same folder:
+/// Writes the true values that belong to the picture of `shown`, which is in the file `image`. The true
+/// values are computed from the geometry, without sensor effects. Let NAME.png be the name of `image`. The
+/// written files are in the same folder:
 ///   NAME_depth.tiff   Depth along the optical axis, m; infinite without an object.
 ///   NAME_s.tiff       Arc length on the arm, m; not a number elsewhere.
 ///   NAME_labels.png   Visible object, 16 bits.

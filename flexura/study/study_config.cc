@@ -133,7 +133,7 @@ const Table<StudyTargetConfig>& fields_of(const StudyTargetConfig*) {
           .field("center", &StudyTargetConfig::center,
                  {.meaning = "Centre.", .unit = Unit::metre, .range = between(-1e6, 1e6)})
           .field("normal", &StudyTargetConfig::normal,
-                 {.meaning = "Normal of the target's plane. Its length must be above 0.",
+                 {.meaning = "Normal of the target's plane. The length of the normal must be above 0.",
                   .range = between(-1e6, 1e6)})
           .field("radius", &StudyTargetConfig::radius,
                  {.meaning = "Radius of the circle.", .unit = Unit::metre, .range = between(1e-6, 1e6)})

@@ -109,8 +109,8 @@ const Table<CalibrateCameraPrior>& fields_of(const CalibrateCameraPrior*) {
                  {.meaning = "Standard deviation of the principal point along each axis, px.",
                   .range = between(0, 1000)})
           .field("zero_std", &CalibrateCameraPrior::zero_std,
-                 {.meaning = "Standard deviation of a head's zero offsets. For pan, it has an effect only if "
-                             "the camera's stage moves.",
+                 {.meaning = "Standard deviation of a head's zero offsets. The zero offset of pan has an "
+                             "effect only if the camera's stage moves.",
                   .unit = Unit::radian,
                   .range = between(0, 1)})
           .field("exact_heads", &CalibrateCameraPrior::exact_heads,
@@ -134,7 +134,7 @@ const Table<CalibrateArmPrior>& fields_of(const CalibrateArmPrior*) {
           .field("response_std", &CalibrateArmPrior::response_std,
                  {.meaning = "Standard deviation of the coefficients of the arm's response error, in rad per "
                              "rad. A coefficient is the error of the bend of one section due to a bend of 1 "
-                             "rad of the same or another section. It is the same in all poses.",
+                             "rad of the same or another section. A coefficient is the same in all poses.",
                   .range = between(0, 1),
                   .default_text = "0.2 with `arm.model = \"static\"` or `\"dynamic\"`, otherwise 0"})
           .field(
@@ -240,11 +240,11 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                  {.meaning = "Longest wait for a picture.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest)})
-          .field(
-              "save", &CalibrateTask::save,
-              {.meaning = "Name of a .toml file for the calibrated rig, which experiments can include. It is "
-                          "written into this file's folder. An existing file with this name is renamed.",
-               .default_text = "not set; the results folder always has the rig as rig.toml"})
+          .field("save", &CalibrateTask::save,
+                 {.meaning =
+                      "Name of a .toml file for the calibrated rig, which experiments can include. The rig "
+                      "file is written into this file's folder. An existing file with this name is renamed.",
+                  .default_text = "not set; the results folder always has the rig as rig.toml"})
           .renamed("wanted", "required_std")
           .renamed("guess", "camera_prior");
   return table;

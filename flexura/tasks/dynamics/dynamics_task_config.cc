@@ -48,13 +48,14 @@ const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*) {
                   .range = between(-50, 50),
                   .count = {2, most_angles},
                   .default_text = "not set"})
-          .field("elevations", &Target::elevations,
-                 {.meaning = "Elevations q of the arm's direction from the plane XOY towards +Z, at the same "
-                             "points as `azimuths`. Their magnitude must be below a quarter turn.",
-                  .unit = Unit::radian,
-                  .range = angle_range,
-                  .count = {2, most_angles},
-                  .default_text = "not set"});
+          .field(
+              "elevations", &Target::elevations,
+              {.meaning = "Elevations q of the arm's direction from the plane XOY towards +Z, at the same "
+                          "points as `azimuths`. The magnitude of an elevation must be below a quarter turn.",
+               .unit = Unit::radian,
+               .range = angle_range,
+               .count = {2, most_angles},
+               .default_text = "not set"});
   return table;
 }
 

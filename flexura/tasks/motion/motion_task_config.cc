@@ -118,7 +118,8 @@ const Table<KeyframesTask>& fields_of(const KeyframesTask*) {
           "stretch also have `stretch_1`. The first row must be the current shape.")
           .field("name", &KeyframesTask::name, name_spec)
           .field("file", &KeyframesTask::file,
-                 {.meaning = "CSV file in this file's folder or below. Its first line names the columns.",
+                 {.meaning = "CSV file in this file's folder or below. The first line of the CSV file names "
+                             "the columns.",
                   .default_text = "not set"})
           .field("columns", &KeyframesTask::columns,
                  {.meaning = "Names of the columns of `rows`. Not allowed with `file`.",

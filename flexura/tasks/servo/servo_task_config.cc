@@ -55,9 +55,10 @@ const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
   using Target = ServoTargetConfig;
   static const auto table =
       with_shape_fields(
-          Table<Target>("target",
-                        "Target shape of the arm. It is given by exactly one of these: bends, the tip's "
-                        "position, a backbone curve in space, direction angles, or two pictures of the arm.")
+          Table<Target>(
+              "target",
+              "Target shape of the arm. The target is given by exactly one of these: bends, the tip's "
+              "position, a backbone curve in space, direction angles, or two pictures of the arm.")
               .field("time", &Target::time,
                      {.meaning = "Time of the target from the task's start. Between targets "
                                  "the reference is interpolated linearly.",
@@ -109,12 +110,12 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
           .field(
               "law", of_task(&T::law),
               {.meaning =
-                   "Control law. It determines which error the servo reduces, and how. `shape`: difference "
-                   "between the shape estimated from both images and the target shape. `points`, `chords`, "
-                   "`moments`: errors of image features. `silhouettes`: errors of the arm's image edges. "
-                   "`potential`: the paper's artificial potential on the errors in two image planes (XOY of "
-                   "the first camera, ZOY of the second). `predictive`: the shape error, with commands "
-                   "planned ahead so that a dynamic arm stops oscillating. `computed_torque` and "
+                   "Control law, which determines the error that the servo reduces, and how. `shape`: "
+                   "difference between the shape estimated from both images and the target shape. `points`, "
+                   "`chords`, `moments`: errors of image features. `silhouettes`: errors of the arm's image "
+                   "edges. `potential`: the paper's artificial potential on the errors in two image planes "
+                   "(XOY of the first camera, ZOY of the second). `predictive`: the shape error, with "
+                   "commands planned ahead so that a dynamic arm stops oscillating. `computed_torque` and "
                    "`shape_potential`: the shape error, with forces in the modes of the arm's oscillation."})
           .field("measure", of_task(&T::measure),
                  {.meaning = "Source of the angles for the laws chords and potential. `picture`: each "

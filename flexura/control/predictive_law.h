@@ -50,8 +50,8 @@ struct PredictiveState {
 /// derivative and excite the modes, which oscillate freely in between. Limits are those of bends and bend
 /// rates, and the given linear ones (PredictiveLimit); stretches are not limited. The solver is the
 /// alternating direction method of multipliers (S. Boyd et al., 2011), with projections on discs and
-/// half-spaces. Its iterations satisfy the limits approximately. The next command satisfies those of bends
-/// and rates exactly. A limiter must check it.
+/// half-spaces. The iterations of this method satisfy the limits approximately. The next command satisfies
+/// those of bends and rates exactly. A limiter must check it.
 class PredictiveLaw {
  public:
   /// `driven`: the arm in terms of the sections that the drives bend. `shaped`: the arm with one section per

@@ -41,7 +41,7 @@ struct PlaneConfig {
   double ignore_base = 0;
   bool may_touch = false;  ///< Whether the arm may touch the obstacle, for example to grasp it.
   std::array<double, 3> point = {0, 0, 0};  ///< A point of the plane, in W, m.
-  /// Normal in W, which points out of the half space. Its length must be above 0.
+  /// Normal in W, which points out of the half space. The length of the normal must be above 0.
   std::array<double, 3> normal = {0, 1, 0};
   std::array<double, 3> color = obstacle_color;  ///< Reflected fractions of red, green and blue light.
 };

@@ -64,8 +64,8 @@ struct SpanPiece {
   /// Curvature, 1/m; radius at the piece's start, m; change of the radius per arc length.
   float curvature, radius, widening;
   float widest;  ///< Largest radius, m.
-  /// Distances from start and end along the axis, m, within which the reference path draws contours. They are
-  /// above 0 where curvature or taper changes.
+  /// Distances from start and end along the axis, m, within which the reference path draws contours. These
+  /// distances are above 0 where curvature or taper changes.
   float kink_before, kink_after;
   float end_sine, end_cosine, end_offset;
   float reach;  ///< Distance from the surface within which contours may divide the pixel, m.
@@ -108,9 +108,9 @@ struct RimPixels {
   std::uint8_t is_plain[span_step];
 };
 
-/// A screen. Its plane is in front of the camera where the inverse depth `nearness` is positive. The light at
-/// the screen's point (x, y) = depth place - middle is brightness max(0, 1 + gradient . (x, y)) (1 - falloff
-/// (x^2 + y^2) / 2).
+/// A screen. The plane of a body is in front of the camera where the inverse depth `nearness` is positive.
+/// The light at the screen's point (x, y) = depth place - middle is brightness max(0, 1 + gradient . (x, y))
+/// (1 - falloff (x^2 + y^2) / 2).
 struct SpanScreen {
   float u0, v0;
   Linear nearness, place[2];

@@ -10,8 +10,8 @@
 
 namespace flexura {
 
-/// Fraction of a limit by which a value may exceed the limit. It allows for rounding errors, because limits
-/// are given in degrees and values are computed in radians.
+/// Fraction of a limit by which a value may exceed the limit. This fraction allows for rounding errors,
+/// because limits are given in degrees and values are computed in radians.
 inline constexpr double limit_tolerance = 1e-9;
 
 /// A limited quantity of one section.

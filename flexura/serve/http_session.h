@@ -33,8 +33,8 @@ struct Upgrade {
 };
 using Step = std::variant<ReadMore, Answer, Question, Upgrade>;
 
-/// The protocol of one HTTP connection, without a socket. Its input is bytes, and its output is actions.
-/// Requests that arrive together are answered one after another.
+/// The protocol of one HTTP connection, without a socket. The input of an HttpSession is bytes, and its
+/// output is actions. Requests that arrive together are answered one after another.
 class HttpSession {
  public:
   /// `local`: the local address of the connection, without its port.

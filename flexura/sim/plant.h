@@ -56,9 +56,9 @@ class Plant {
   /// Advances the computation to the rig's time `time`, s, for plants that are integrated step by step. By
   /// default, it does nothing.
   virtual void advance(double /*time*/) {}
-  /// Returns the backbone at `time`, s. It must be at most the horizon (PlantSetup) before the rig's time,
-  /// and not after the rig's time. Queries change nothing. Several threads may query at once while no thread
-  /// commands or advances the plant.
+  /// Returns the backbone at `time`, s. `time` must be at most the horizon (PlantSetup) before the rig's
+  /// time, and not after the rig's time. Queries change nothing. Several threads may query at once while no
+  /// thread commands or advances the plant.
   [[nodiscard]] virtual Backbone backbone(double time) const = 0;
   /// Returns the bends and stretches that the drives impose on the sections. Returns std::nullopt if drives
   /// do not bend sections. Times are as for backbone(), but future times are allowed too.
@@ -100,14 +100,14 @@ class Plant {
   [[nodiscard]] virtual std::optional<RodEnergy> energy(double /*time*/) const { return std::nullopt; }
   /// Returns the contacts with obstacles and with the arm itself. Times are as for backbone().
   [[nodiscard]] virtual std::vector<PlantContact> contacts(double /*time*/) const { return {}; }
-  /// Returns the number of microsteps that each motor has lost up to a time, s. Its controller does not
-  /// notice them. Returns an empty vector if motors never lose steps.
+  /// Returns the number of microsteps that each motor has lost up to a time, s. Controllers do not notice
+  /// lost microsteps. Returns an empty vector if motors never lose steps.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) const { return {}; }
 };
 
 /// Initial conditions of a plant.
 struct PlantSetup {
-  const ArmSetup& truth;  ///< The true arm. It starts in the state `truth.initial`.
+  const ArmSetup& truth;  ///< The true arm. The plant starts in the state `truth.initial`.
   Eigen::VectorXd start;  ///< The initial command u.
   double horizon = 0;     ///< Queries are allowed for this time before the rig's time, s.
 };
@@ -147,7 +147,7 @@ class DrivenPlant : public ArcPlant {
   std::vector<double> zero_;  // Tendon displacements at motor position 0, m.
 };
 
-/// An arm that is a chain of arcs. Its sections bend as commanded, within their own rates.
+/// An arm that is a chain of arcs. The sections bend as commanded, within their own rates.
 class BendPlant : public ArcPlant {
  public:
   /// Uses the limits and rates of the true sections.

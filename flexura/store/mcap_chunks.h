@@ -15,7 +15,7 @@ namespace flexura {
 /// Largest decompressed size of a compressed chunk, bytes. The writer does not compress larger chunks.
 inline constexpr std::size_t mcap_most_chunk = std::size_t{128} << 20;
 
-/// Gives access to the messages in a log file and in its compressed chunks. It decompresses a chunk when one
+/// Gives access to the messages in a log file and in its compressed chunks. A chunk is decompressed when one
 /// of its messages is read, and keeps the last few chunks. Several threads may read at once.
 class McapChunks {
  public:

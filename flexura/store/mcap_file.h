@@ -7,7 +7,7 @@
 
 namespace flexura {
 
-/// A new file to which bytes are appended. It never replaces an existing file.
+/// A new file to which bytes are appended. A new file never replaces an existing file.
 class AppendFile {
  public:
   /// Creates the file. Throws std::system_error with the path if it already exists, its folder does not
@@ -46,7 +46,8 @@ class MappedFile {
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
-  /// Returns the bytes that the file had when it was opened. They are valid as long as this object exists.
+  /// Returns the bytes that the file had when it was opened. The bytes are valid as long as this object
+  /// exists.
   [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
 
  private:

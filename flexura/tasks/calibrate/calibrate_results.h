@@ -45,9 +45,9 @@ void write_rig_file(const Setup& setup, const CalibrationRun& run, const std::st
 [[nodiscard]] ImagePlot observed_picture(const CalibrationRun& run, const CameraObservation& observed,
                                          std::string heading);
 
-/// Returns the report's chapter on a calibration. It has a table of the rig's errors before and after the
-/// calibration, charts, and pictures from before and after. `number`: index among the calibrations, from 0,
-/// for names of figures.
+/// Returns the report's chapter on a calibration. The chapter has a table of the rig's errors before and
+/// after the calibration, charts, and pictures from before and after. `number`: index among the calibrations,
+/// from 0, for names of figures.
 [[nodiscard]] Chapter calibration_chapter(const CalibrationRun& run, std::size_t number);
 
 }  // namespace flexura

@@ -108,9 +108,9 @@ struct RimPixels {
   std::uint8_t is_plain[span_step];
 };
 
-/// A screen. The plane of a body is in front of the camera where the inverse depth `nearness` is positive.
-/// The light at the screen's point (x, y) = depth place - middle is brightness max(0, 1 + gradient . (x, y))
-/// (1 - falloff (x^2 + y^2) / 2).
+/// A screen. The plane of the screen is in front of the camera where the inverse depth `nearness` is
+/// positive. The light at the screen's point (x, y) = depth place - middle is brightness max(0, 1 + gradient
+/// . (x, y)) (1 - falloff (x^2 + y^2) / 2).
 struct SpanScreen {
   float u0, v0;
   Linear nearness, place[2];

@@ -42,7 +42,7 @@ class PotentialLaw {
   /// std::invalid_argument for numbers that are not finite, and for a target whose size does not fit the arm.
   PotentialLaw(const DistributedArm& arm, Eigen::VectorXd target, const PotentialGains& gains);
 
-  /// Returns the violated conditions of the theory in words. If it is empty, W decreases for certain.
+  /// Returns the violated conditions of the theory in words. If the list is empty, W decreases for certain.
   [[nodiscard]] std::vector<std::string> violations() const;
 
   /// Computes the generalized forces Q on an arm that is set to the state (x, v).

@@ -28,7 +28,7 @@ struct PredictiveLimit {
 
 /// Input of a step of the law: the state of an arm, and its target from now on.
 struct PredictiveState {
-  ArmState sent;     ///< Last command. The drives have reached it.
+  ArmState sent;     ///< Last command. The drives have reached this command.
   ArmState rate;     ///< Rate at which commands changed in the last step: bends in rad/s, stretches in 1/s.
   ArmState rest;     ///< Shape of the arm at rest under `sent`.
   ArmState desired;  ///< Target shape now.

@@ -23,7 +23,7 @@ struct CanopenNode {
   std::int32_t position = 0;           ///< Position in the last TPDO 1, in the drive's units.
   NmtState state = NmtState::boot_up;  ///< State in the last heartbeat.
   double heard = -1;                   ///< Time when its last heartbeat was read, s; below 0: never.
-  bool has_restarted = false;          ///< Whether it has booted since the flag was cleared.
+  bool has_restarted = false;          ///< Whether the node has booted since the flag was cleared.
   Emergency emergency = {};            ///< Last emergency; code 0: none.
 };
 

@@ -48,8 +48,8 @@ struct Cia402Config {
 const Table<Cia402AxisConfig>& fields_of(const Cia402AxisConfig*);
 const Table<Cia402Config>& fields_of(const Cia402Config*);
 
-/// Returns the first reason why a configuration cannot be used, or "". Use it for configurations that were
-/// not read from a file: the file reader checks all values.
+/// Returns the first reason why a configuration cannot be used, or "". Use this function for configurations
+/// that were not read from a file: the file reader checks all values.
 [[nodiscard]] std::string problem_of(const Cia402Config& config);
 
 }  // namespace flexura

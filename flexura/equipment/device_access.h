@@ -42,7 +42,7 @@ class DeviceAccess {
 /// Real devices, at the configured addresses.
 class RealDevices : public DeviceAccess {
  public:
-  /// Opens devices without a guard. Use it only if nothing will move.
+  /// Opens devices without a guard. Use this constructor only if nothing will move.
   RealDevices() = default;
   /// Opens devices that a guard protects. `watchdog`: period of the guard, s, > 0. Throws like Guard.
   explicit RealDevices(double watchdog) : guard_(std::in_place, watchdog) {}

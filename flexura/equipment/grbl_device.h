@@ -54,7 +54,7 @@ class GrblDevice : public ServedDevice {
   /// Restarts the controller as a power cycle or the DTR line does. The positions that the controller reports
   /// restart at 0.
   void restart(double now);
-  /// Raises an alarm. The motors stop without braking, and overrun a little. With alarm 2, they do not
+  /// Raises an alarm. The motors stop without braking, and overrun a little. With alarm 2, the motors do not
   /// overrun.
   void raise_alarm(int code, double now);
   /// Turns a motor by a number of microsteps, without the controller's knowledge.

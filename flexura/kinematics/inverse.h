@@ -74,9 +74,10 @@ enum class InverseOutcome {
 /// Result of inverse kinematics: a state and, if it is not a solution, the reason.
 struct InverseResult {
   InverseOutcome outcome = InverseOutcome::no_convergence;
-  bool is_proven = false;  ///< Whether it is proven that no state within the limits reaches the target.
-  ArmState state;          ///< The solution, or the nearest state found. This state is within the limits.
-  Eigen::Vector3d tip;     ///< p_WT of `state`, m.
+  bool is_proven =
+      false;            ///< Whether the search has proven that no state within the limits reaches the target.
+  ArmState state;       ///< The solution, or the nearest state found. This state is within the limits.
+  Eigen::Vector3d tip;  ///< p_WT of `state`, m.
   /// Distance of the tip from the target, m; for a curve, the largest distance along the arm.
   double position_error = 0.0;
   /// Angle between the tip's direction or rotation and that of the target, rad; 0 for targets without either.

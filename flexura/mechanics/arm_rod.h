@@ -43,9 +43,9 @@ namespace flexura {
 /// Default number of arcs of a section of an arm that is modelled as a rod.
 inline constexpr std::size_t arcs_of_rod_section = 3;
 
-/// Returns the model of an arm and its drive that tasks use. In it, a section is one arc or several
-/// (Section::bend_profile). If the arm's model is static or dynamic, shapes are those of the rod's
-/// equilibrium under commands (RodResponse). Throws as RodResponse.
+/// Returns the model of an arm and its drive that tasks use. In this model, a section consists of one or
+/// several arcs (Section::bend_profile). If the arm's model is static or dynamic, shapes are those of the
+/// rod's equilibrium under commands (RodResponse). Throws as RodResponse.
 [[nodiscard]] ArmModel arm_model_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
 }  // namespace flexura

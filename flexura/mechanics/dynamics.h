@@ -30,7 +30,7 @@ struct RodDynamicsConfig {
   /// converges. The shortest piece is the step divided by this number, a power of 2. 1: steps are not
   /// divided.
   int most_pieces = 65536;
-  /// Whether cross-sections have rotary inertia. Without it a rod must not twist.
+  /// Whether cross-sections have rotary inertia. Without rotary inertia a rod must not twist.
   bool rotary_inertia = true;
   /// Stiffness of tendon friction before sliding, relative to the rod's stiffness against a pull of this
   /// tendon. Let d be the tendon displacement that corresponds to the bend caused by the tension. A sticking

@@ -134,11 +134,12 @@ const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*) {
                  {.meaning = "Coulomb friction coefficient mu along the tendon. After a total wrap angle "
                              "theta from the base (rad), the fraction exp(-mu theta) of the tension remains.",
                   .range = between(0, 10)})
-          .field("breaks_at", &TendonRouteConfig::breaks_at,
-                 {.meaning = "Time at which the tendon breaks. Afterwards its tension is 0.",
-                  .unit = Unit::second,
-                  .range = between(0, 1e9),
-                  .default_text = "never"});
+          .field(
+              "breaks_at", &TendonRouteConfig::breaks_at,
+              {.meaning = "Time at which the tendon breaks. After the break, the tension of the tendon is 0.",
+               .unit = Unit::second,
+               .range = between(0, 1e9),
+               .default_text = "never"});
   return table;
 }
 

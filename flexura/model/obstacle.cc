@@ -23,7 +23,7 @@ Table<S> obstacle_table(const char* kind, const char* meaning) {
       .field(
           "ignore_base", &S::ignore_base,
           {.meaning = "Length of the part of the arm next to its base that may touch the obstacle, measured "
-                      "along the unstretched arm. Use it, for example, if the obstacle is the arm's support.",
+                      "along the unstretched arm. An example is an obstacle that is the arm's support.",
            .unit = Unit::metre,
            .range = between(0, 1e6)})
       .field("may_touch", &S::may_touch,

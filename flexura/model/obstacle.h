@@ -20,7 +20,7 @@ struct Obstacle {
   /// Signed distance of a point in W from the obstacle's surface, m: a convex function that is negative
   /// inside.
   std::function<double(const Eigen::Vector3d& p_W)> distance;
-  /// Unit normal of a plane in W. In its direction `distance` increases.
+  /// Unit normal of a plane in W. `distance` increases in the direction of the normal.
   std::optional<Eigen::Vector3d> normal{};
   /// The plane of a side of a box: all points p_W with normal . p_W = offset (m). The normal is a unit vector
   /// in W that points outwards. The height of a point above this plane never exceeds `distance`.

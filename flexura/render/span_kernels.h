@@ -144,8 +144,8 @@ struct SpanKernels {
   /// Draws the piece's surface in the columns [begin, end) where the piece is nearest and no contour is near.
   void (*draw)(const SpanPiece& piece, int begin, int end, SpanRow& row);
   /// Draws the screen in the columns [begin, end) where the screen is nearest and none of its edges is near.
-  /// `is_first` means that the row is empty. Without distortion, its content is then ignored, except for the
-  /// light of a screen with uniform light.
+  /// `is_first` means that the row is empty. Without distortion, the content of an empty row is ignored,
+  /// except for the light of a screen with uniform light.
   void (*screen)(const SpanScreen& screen, int begin, int end, bool is_first, SpanRow& row);
   /// Appends the columns that may contain the rim to row.borders.
   void (*find_rim)(const SpanRim& rim, int begin, int end, SpanRow& row);

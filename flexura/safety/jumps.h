@@ -10,8 +10,8 @@
 
 namespace flexura {
 
-/// Rate of a bend (rad/s) or a stretch (1/s) above which a change counts as a jump. For a bend, it is more
-/// than a full turn in 1 ms.
+/// Rate of a bend (rad/s) or a stretch (1/s) above which a change counts as a jump. For a bend, this rate is
+/// more than a full turn in 1 ms.
 inline constexpr double jump_rate = 1e4;
 
 /// Smallest jump that is reported: rad for a bend, a factor for a stretch.

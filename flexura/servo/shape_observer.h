@@ -25,8 +25,8 @@ class ShapeObserver {
 
   /// Starts to measure the time without observations at `time`, s of the rig's clock.
   void begin(double time) { seen_since_ = time; }
-  /// Estimates the arm's shape at the observation's time. `now`: current time, s of the rig's clock. If it
-  /// finds the shape, it returns true, corrects the observation's views by the estimated camera errors, and
+  /// Estimates the arm's shape at the observation's time. `now`: current time, s of the rig's clock. If the
+  /// shape is found, returns true, corrects the observation's views by the estimated camera errors, and
   /// last() becomes this observation. Returns false if it finds no shape, for example if a picture shows no
   /// arm.
   bool observe(const std::shared_ptr<ServoObservation>& observed, double now);

@@ -39,7 +39,7 @@ struct PlantPushForce {
 /// The true arm of the simulated world: computes its response to commands over time.
 ///
 /// For an arm with a drive, a command u has the position of each motor, in microsteps in the motor's own
-/// direction. Without a drive, it has bend_x, bend_y and stretch of each section. A plant is not a port: it
+/// direction. Without a drive, u has bend_x, bend_y and stretch of each section. A plant is not a port: it
 /// returns true values, which algorithms must not use.
 class Plant {
  public:
@@ -54,7 +54,7 @@ class Plant {
   /// Commands a stop at `time`, s, as fast as possible. `time` must not be before the last command.
   virtual void halt(double time) = 0;
   /// Advances the computation to the rig's time `time`, s, for plants that are integrated step by step. By
-  /// default, it does nothing.
+  /// default, this function does nothing.
   virtual void advance(double /*time*/) {}
   /// Returns the backbone at `time`, s. `time` must be at most the horizon (PlantSetup) before the rig's
   /// time, and not after the rig's time. Queries change nothing. Several threads may query at once while no

@@ -18,7 +18,7 @@ namespace flexura {
 /// The inputs of a rod over time: its motors or commanded bends, and its weight and loads, which can be
 /// switched off. The inputs are functions of time and of the commands up to this time.
 ///
-/// With a drive, its spools pull the tendons in, starting from the pretension. A motor whose load exceeds its
+/// With a drive, the spools pull the tendons in, starting from the pretension. A motor whose load exceeds its
 /// pull-out torque loses the steps of one turn of its field at a time. Without a drive, tendon displacements
 /// are those of arcs with the commanded bends, plus those of pull(). Commanded stretches are factors on the
 /// sections' lengths.

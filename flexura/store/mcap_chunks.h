@@ -25,7 +25,7 @@ class McapChunks {
   /// Chunk number of messages that are not compressed: those are in the file itself.
   static constexpr std::uint32_t plain = 0;
 
-  /// Adds a chunk of zstd frames with `size` bytes of content. Returns its number, from 1.
+  /// Adds a chunk of zstd frames with `size` bytes of content. Returns the number of the chunk, from 1.
   std::uint32_t add(std::span<const std::byte> frames, std::size_t size);
   /// Returns the content of a chunk. Throws std::runtime_error if it does not decompress to the size given to
   /// add().

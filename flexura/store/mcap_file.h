@@ -24,7 +24,7 @@ class AppendFile {
   [[nodiscard]] bool is_open() const { return descriptor_ >= 0; }
 
   /// Passes the bytes to the operating system before it returns, so that they are not lost if the process
-  /// ends. If it cannot write all bytes, it removes those already written, closes the file and throws
+  /// ends. If not all bytes can be written, removes those already written, closes the file and throws
   /// std::system_error with the path.
   void append(std::span<const std::byte> bytes);
   /// Closes the file. Throws std::system_error with the path if the system reports a late failure. May be

@@ -74,7 +74,8 @@ class LiveRig {
   /// changes nothing and throws std::runtime_error. Throws std::invalid_argument for an invalid push.
   void push(const std::optional<PlantPush>& push);
   [[nodiscard]] bool is_pushed() { return simulated_->arm().plant().pushed(rig_time(now())).has_value(); }
-  /// Returns whether the arm is pushed or oscillates. Then its motion differs from the commanded motion.
+  /// Returns whether the arm is pushed or oscillates. Then the arm's motion differs from the commanded
+  /// motion.
   [[nodiscard]] bool is_yielding();
   /// Returns a one-line warning about the present state of the arm, or "".
   [[nodiscard]] std::string warning() { return simulated_->arm().plant().warning(rig_time(now())); }

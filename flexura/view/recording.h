@@ -20,7 +20,7 @@
 namespace flexura {
 
 /// Results of a run, prepared for viewing: the content of the log by time. Immutable, so that threads can
-/// share it. For a run that was killed, it has the log up to the last complete chunk.
+/// share it. For a run that was killed, a Recording has the log up to the last complete chunk.
 class Recording {
  public:
   /// Opens a results folder of `flexura run`. Throws InputError if the folder is not a results folder, or if
@@ -48,7 +48,7 @@ class Recording {
   /// arm.
   [[nodiscard]] ArmState state(std::size_t place) const;
   /// Returns the run's condition at a time, s. The condition is `unsafe` while a limit is violated, and
-  /// otherwise `running`. At the end, it is the condition in the results.
+  /// otherwise `running`. At the end, the result is the condition in the results file.
   [[nodiscard]] Conditioned condition(double time) const;
 
   /// Returns how many images of a camera the log has.

@@ -94,8 +94,8 @@ struct ValueShot {
   std::shared_ptr<const std::vector<Instant>> instants;  ///< States that the frame shows.
 };
 
-/// Returns a frame for rendering. `instants`: at least one state in ascending order of time; the frame
-/// interpolates between them. The exposure starts at `start` (s).
+/// Returns the data that are needed to render a frame. `instants`: at least one state in ascending order of
+/// time; the frame interpolates between them. The exposure starts at `start` (s).
 [[nodiscard]] ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t frame,
                                    double start, std::vector<Instant> instants);
 
@@ -111,8 +111,8 @@ struct ValueShot {
 [[nodiscard]] bool show_the_same(const ValueShot& a, const ValueShot& b);
 
 /// Returns the times of the instants that value_shot() needs for a frame that starts at `start` (s). For an
-/// instantaneous exposure, it is one time. Otherwise, the times are so close that the motion between them is
-/// nearly linear.
+/// instantaneous exposure, there is one time. Otherwise, the times are so close that the motion between them
+/// is nearly linear.
 [[nodiscard]] std::vector<double> times_of_instants(const SensorConfig& sensor, double start);
 
 }  // namespace flexura

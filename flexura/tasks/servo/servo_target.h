@@ -12,9 +12,9 @@ namespace flexura {
 /// Shape of an arm for a requested target, and the distance between both.
 struct ServoTargetShape {
   ArmState state;  ///< Command for this shape.
-  /// Distance from the requested target, share of the arm's length. For a target position, it is the distance
-  /// of the tip. For a curve or angles, it is the root mean square distance along the arm. The distance is 0
-  /// for an exact shape.
+  /// Distance from the requested target, share of the arm's length. For a target position, this is the
+  /// distance of the tip. For a curve or angles, this is the root mean square distance along the arm. The
+  /// distance is 0 for an exact shape.
   double missed = 0;
 };
 /// Returns the shape of `arm` for a target that is not given by pictures. The search starts at the command

@@ -92,9 +92,9 @@ const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
                   .count = {2, most_points},
                   .default_text = "not set"})
           .field("pictures", &Target::pictures,
-                 {.meaning =
-                      "Two picture files in this file's folder or below, in the order of the task's cameras. "
-                      "When they were taken, the cameras had the same axis positions as at the task's start.",
+                 {.meaning = "Two picture files in this file's folder or below, in the order of the task's "
+                             "cameras. When the pictures were taken, the cameras had the same axis positions "
+                             "as at the task's start.",
                   .count = {2, 2},
                   .default_text = "not set"});
   return table;

@@ -222,7 +222,7 @@ TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
   EXPECT_THAT(refused({.experiment = step_response, .motion = results(), .from = 50}),
               HasSubstr("has no true arm states (/arm/truth)"));
   EXPECT_THAT(refused({.experiment = step_response, .motion = results(), .to = 0.05}),
-              HasSubstr("samples of a motion: expected at least"));
+              HasSubstr("samples: expected at least"));
   EXPECT_EQ(refused({.experiment = step_response, .motion = results(), .from = 2, .to = 1}),
             "--from: 2 s is not before --to, 1 s: expected an earlier time");
   EXPECT_THAT(refused({.experiment = step_response, .motion = results(), .to = std::nan("")}),

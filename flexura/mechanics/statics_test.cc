@@ -200,7 +200,7 @@ TEST(Statics, RefusesWhatIsNoInput) {
     EXPECT_STREQ(
         error.what(),
         "section 2: Young's modulus and shear modulus must be above 0; tendon 1: ends at a section that "
-        "the rod has not");
+        "the rod does not have");
   }
 }
 

@@ -127,7 +127,7 @@ struct ViscaPlace {
 [[nodiscard]] std::optional<ViscaPlace> parse_visca_place(std::string_view data, ViscaDigits digits);
 /// Reads the data of an answer to visca_ask_zoom(), counts.
 [[nodiscard]] std::optional<std::int64_t> parse_visca_zoom(std::string_view data);
-/// The following functions return the data of these answers.
+/// The following functions return the data of answers to visca_ask_move() and visca_ask_zoom().
 [[nodiscard]] std::string visca_place_data(const ViscaPlace& place, ViscaDigits digits);
 [[nodiscard]] std::string visca_zoom_data(std::int64_t count);
 

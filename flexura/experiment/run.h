@@ -19,7 +19,7 @@ enum class RunOutcome {
   unsafe,     ///< A task would violate a limit of the arm or cause a contact; the run is simulated for
               ///< inspection.
   failed,     ///< A calibration, a servo or a dynamics task failed and ended the run.
-  cancelled,  ///< The run was cancelled (Progress::cancelled). The log ends with the last played step.
+  cancelled,  ///< The run was cancelled (Progress::cancelled). The log ends with the last executed step.
 };
 
 /// Returns "done", "unsafe", "failed" or "cancelled", the names used in summaries.

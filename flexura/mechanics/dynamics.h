@@ -183,9 +183,9 @@ class RodDynamics {
                                const RodLoads& loads, const RodSlide* slide = nullptr);
 
   /// Adds a point mass to the rod until it is dropped and returns the state after the inelastic impact. The
-  /// generalized momentum of rod and mass is conserved. Energy is lost unless both had the same velocity.
-  /// `tendons` and `loads` act from now on. chain() does not include the mass. Throws std::invalid_argument
-  /// for a place that is not a node, a mass below 0, or numbers that are not finite.
+  /// generalized momentum of rod and mass is conserved. Energy is lost unless the mass and the place had
+  /// equal velocities. `tendons` and `loads` act from now on. chain() does not include the mass. Throws
+  /// std::invalid_argument for a place that is not a node, a mass below 0, or numbers that are not finite.
   [[nodiscard]] RodState pick_up(const RodState& state, const RodPayload& payload, const TendonInput& tendons,
                                  const RodLoads& loads);
   /// Releases all payloads at a place. The velocities of the payloads and of the rod do not change.

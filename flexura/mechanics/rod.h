@@ -117,7 +117,7 @@ struct EndLoad {
   std::size_t section = 0;
   /// N, in the base's frame; if `following`, in that of the section's end.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< N m, in the same frame as the force.
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< Moment, N m, in the same frame as the force.
   /// Whether force and moment turn with the section's end.
   bool following = false;
 };

@@ -81,7 +81,8 @@ struct EquilibriumSlopes {
   /// section's parameters are relative changes of its stiffness against shear, stretch, bends and twist, and
   /// of its mass per length.
   Eigen::MatrixXd tip_by_parameters;
-  Eigen::MatrixXd q_by_parameters;  ///< size() x 5 sections, by the same parameters.
+  Eigen::MatrixXd
+      q_by_parameters;  ///< Derivatives of q with respect to these parameters, size() x (5 sections).
 };
 
 /// Solves rods for equilibrium: minima of their energy in reduced strains (F. Boyer, F. Renda et al.,

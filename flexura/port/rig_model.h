@@ -48,7 +48,8 @@ struct RigStance {
   HeadState head = {};
   StageState stage = {};
   /// Index of an earlier RigStance of the observations, if the camera has neither panned nor tilted since
-  /// then. Both stances then have equal errors of the head's angles. Zoom and stage may have moved.
+  /// then. Then this stance and the earlier one have equal errors of the head's angles. Zoom and stage may
+  /// have moved.
   std::optional<std::size_t> turned_as = {};
 
   /// Returns the axis positions without the camera's index.

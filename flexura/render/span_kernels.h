@@ -72,9 +72,9 @@ struct SpanPiece {
   /// Distance inside a contour within which the images of edges of rings and lines are curved, m; >= reach.
   float bent_reach;
   int centering;       ///< Number of Newton steps to the point at which the ray is deepest in the tube.
-  float largest_move;  ///< Largest allowed length of the last of these steps, m.
+  float largest_move;  ///< Largest allowed length of the last of the `centering` steps, m.
   int refining;        ///< Number of Newton steps to the ray's entry into the tube.
-  float settled;       ///< Largest allowed length of the last of these steps, m.
+  float settled;       ///< Largest allowed length of the last of the `refining` steps, m.
   float light[3];  ///< Directional light divided by the radius, times the unit direction towards the light.
   float ambient;
   float albedo[3];  ///< Albedo at the piece's start.

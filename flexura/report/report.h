@@ -52,7 +52,7 @@ struct ReportData {
       double start = 0.0;  ///< In s.
       double end = 0.0;    ///< In s.
       std::vector<std::size_t>
-          sections;      ///< Indices of sections that are marked with a warning during that time.
+          sections;  ///< Indices of the sections that are marked with a warning while the violation lasts.
       std::string text;  ///< Text beside the drawing of the violation.
       /// If the violation has a separate drawing: the time of the drawing, s. This time should be one of the
       /// report's times.

@@ -44,7 +44,7 @@ class RehearsedWorld {
 
   /// Returns whether the camera loses a frame (SensorConfig::drop, SensorConfig::silent).
   [[nodiscard]] bool is_lost(std::size_t camera, std::int64_t frame);
-  /// Renders a frame whose exposure is over. Only one thread at a time may call it for the same camera.
+  /// Renders a frame whose exposure is over. Only one thread at a time may render a frame of the same camera.
   [[nodiscard]] Picture picture(std::size_t camera, std::int64_t frame);
   [[nodiscard]] const SensorConfig& sensor(std::size_t camera) const { return sensors_.at(camera); }
 

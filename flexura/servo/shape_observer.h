@@ -53,7 +53,7 @@ class ShapeObserver {
   /// without dynamics.
   [[nodiscard]] const SwingFilter& swing() const { return tracker_.swing(); }
   /// Returns the motion of the drives from the last observation until `time`, s, according to their readings.
-  /// The motion includes the excitation of these modes by the motion.
+  /// The result includes the excitation of the oscillation modes by the motion.
   [[nodiscard]] SwingPath path_until(double time, const std::vector<SwingMode>& modes) const;
   /// Returns the standard deviation of the last shape due to the pictures' noise: root mean square along the
   /// arm, share of its length. The value does not include errors of cameras without a prior; these are equal

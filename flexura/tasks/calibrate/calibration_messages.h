@@ -90,8 +90,8 @@ struct CalibrationDecisionMessage {
   std::int64_t outliers = 0;          ///< Number of outliers.
   double angle =
       0;  ///< Angle that the optical axes would have if the result of the calibration were commanded, rad.
-  double angle_sigma = 0;                      ///< Standard deviation of this angle, rad.
-  std::array<double, 2> focal = {0, 0};        ///< Focal lengths, px.
+  double angle_sigma = 0;                ///< Standard deviation of the angle between the optical axes, rad.
+  std::array<double, 2> focal = {0, 0};  ///< Focal lengths, px.
   std::array<double, 2> focal_sigma = {0, 0};  ///< Relative standard deviations of the focal lengths.
   double zoom_ratio_sigma = 0;                 ///< Relative standard deviation of the zoom ratio.
   std::string next;                            ///< Next action in words.

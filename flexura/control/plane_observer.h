@@ -11,8 +11,8 @@ namespace flexura {
 
 /// Observes a distributed arm in two parallel projections and computes its errors from a target
 /// (docs/control.md, eq. 14 and 15). Where the projections do not determine the errors (planes_determine) or
-/// contradict each other (planes_contradict), points are triangulated from both pictures. There, theta and q
-/// are measured directly, with equal noise.
+/// contradict each other (planes_contradict), points are triangulated from both pictures. At these points,
+/// theta and q are measured directly, with equal noise.
 class PlaneObserver {
  public:
   /// Makes an observer for arms that have the model of `arm`. `target`: coordinates of the target. `noise`:

@@ -76,7 +76,7 @@ class ViscaBus {
   [[nodiscard]] double now() const { return now_(); }
   /// Returns the number of heads of the chain; 0 if unknown.
   [[nodiscard]] int heads() const;
-  /// Returns "LINK, VISCA head 2".
+  /// Returns the name of a head for messages, for example "LINK, VISCA head 2".
   [[nodiscard]] std::string name_of(int address) const;
 
  private:

@@ -80,9 +80,9 @@ class Plant {
   /// Returns false and does nothing if forces do not move the arm. Throws std::invalid_argument for a push
   /// with values that are not finite or out of bounds, or with a point off the arm.
   virtual bool push(double /*time*/, const std::optional<PlantPush>& /*push*/) { return false; }
-  /// Returns the push at a time, s. Times are as for backbone().
+  /// Returns the push at a time, s. Valid times are the same as for backbone().
   [[nodiscard]] virtual std::optional<PlantPush> pushed(double /*time*/) const { return std::nullopt; }
-  /// Returns the effect of the push at a time, s. Times are as for backbone().
+  /// Returns the effect of the push at a time, s. Valid times are the same as for backbone().
   [[nodiscard]] virtual std::optional<PlantPushForce> push_force(double /*time*/) const {
     return std::nullopt;
   }
@@ -93,12 +93,13 @@ class Plant {
   /// Returns a one-line warning about an unusual state of the arm; "" if there is none. Times are as for
   /// backbone().
   [[nodiscard]] virtual std::string warning(double /*time*/) const { return {}; }
-  /// Returns the tension of each tendon at the arm's base, N; empty if unknown. Times are as for backbone().
+  /// Returns the tension of each tendon at the arm's base, N; empty if unknown. Valid times are the same as
+  /// for backbone().
   [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) const { return {}; }
   /// Returns kinetic energy, strain energy and potential energy of weight and loads. Returns std::nullopt for
-  /// an arm without inertia. Times are as for backbone().
+  /// an arm without inertia. Valid times are the same as for backbone().
   [[nodiscard]] virtual std::optional<RodEnergy> energy(double /*time*/) const { return std::nullopt; }
-  /// Returns the contacts with obstacles and with the arm itself. Times are as for backbone().
+  /// Returns the contacts with obstacles and with the arm itself. Valid times are the same as for backbone().
   [[nodiscard]] virtual std::vector<PlantContact> contacts(double /*time*/) const { return {}; }
   /// Returns the number of microsteps that each motor has lost up to a time, s. Controllers do not notice
   /// lost microsteps. Returns an empty vector if motors never lose steps.

@@ -21,7 +21,7 @@ namespace flexura {
 
 /// Answer to a line.
 struct GrblAnswer {
-  int error = 0;                  ///< N of error:N, 0 for ok.
+  int error = 0;                  ///< Number N of error:N; 0 for ok.
   std::vector<GrblMessage> said;  ///< Settings and feedback that arrived before the answer.
 };
 

@@ -23,7 +23,7 @@ struct VideoStream {
   std::string name;  ///< Path of the video in the address. The path has only characters that addresses allow.
   int width = 640, height = 480;
   PixelKind pixels = PixelKind::gray;  ///< Pixels. A gray video is sent with three equal colours.
-  double frame_rate = 30;              ///< Hz, > 0.
+  double frame_rate = 30;              ///< Frame rate, Hz, > 0.
 };
 
 /// Settings of a video server.

@@ -33,11 +33,11 @@ struct RodParameter {
 
 /// Measurement of a rod at one time.
 struct RodMotionRecordSample {
-  double time = 0;    ///< s; later than in the previous sample.
+  double time = 0;    ///< Time, s; later than in the previous sample.
   Eigen::VectorXd q;  ///< Strain modes, as in RodChain.
   /// dq/dt, in all samples or in none. Missing: computed from differences of q.
   std::optional<Eigen::VectorXd> v = {};
-  std::vector<double> tensions = {};  ///< N, one per tendon, each >= 0; empty: zero.
+  std::vector<double> tensions = {};  ///< Tensions, N, one per tendon, each >= 0; empty: zero.
   /// Covariance of the errors of q, modes x modes, in all samples or in none; replaces
   /// RodMotionRecord::q_noise. Symmetric, positive definite.
   Eigen::MatrixXd q_covariance = {};

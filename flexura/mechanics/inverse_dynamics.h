@@ -29,7 +29,7 @@ struct TensionFitConfig {
 
 /// Tensions that come nearest to target generalized forces.
 struct TensionFit {
-  std::vector<double> tensions;  ///< N, one per tendon, each from 0 to its maximum.
+  std::vector<double> tensions;  ///< Tensions, N, one per tendon, each from 0 to its maximum.
   Eigen::VectorXd desired;       ///< Target generalized forces.
   Eigen::VectorXd missing;       ///< Remaining forces: target minus those of the tensions.
   /// Elastic energies that the rod would store under the target forces, and under the missing forces, J. If

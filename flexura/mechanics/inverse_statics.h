@@ -58,7 +58,7 @@ struct InverseStaticsResult {
   std::string problem;  ///< Why the target was not reached, in words.
   /// Whether the target was reached with a local minimum of the sum of squared tensions.
   bool is_least = false;
-  std::vector<double> tensions;  ///< N, each from 0 to its maximum. Empty for bad input.
+  std::vector<double> tensions;  ///< Tensions, N, each from 0 to its maximum; empty for invalid input.
   /// Equilibrium under these tensions. The `displacements` of the equilibrium are the lengths that a drive
   /// must pull in, m.
   Equilibrium equilibrium;

@@ -15,9 +15,9 @@ namespace flexura {
 
 /// Measurement of a rod's places at one time.
 struct RodPlaceSample {
-  double time = 0;                         ///< s; later than in the previous sample.
+  double time = 0;                         ///< Time, s; later than in the previous sample.
   std::vector<Eigen::Vector3d> positions;  ///< Measured places, in the frame of the rod's base, m.
-  std::vector<double> tensions = {};       ///< N, one per tendon, each >= 0; empty: zero.
+  std::vector<double> tensions = {};       ///< Tensions, N, one per tendon, each >= 0; empty: zero.
 };
 
 /// Motion of a rod's modes from measured places.

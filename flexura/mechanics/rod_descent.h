@@ -22,7 +22,7 @@ class RodDescent {
     double tension = 0;  ///< Tension, N, of a tendon that is not held.
     bool is_held = false;
     double length = 0;      ///< Path length above which a held tendon pulls, m.
-    double compliance = 0;  ///< m/N; > 0 for a held tendon.
+    double compliance = 0;  ///< Compliance, m/N; > 0 for a held tendon.
     /// Additional compliance of a held tendon around the value `tension`, m/N (augmented Lagrangian: M.
     /// Hestenes, M. J. D. Powell 1969). The final tension is returned as `tension`.
     double penalty = 0;

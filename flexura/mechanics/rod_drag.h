@@ -19,7 +19,7 @@ struct RodDragConfig {
   double density = 1000;
   double across_coefficient = 1;    ///< Coefficient of form drag; about 1 for a cylinder.
   double along_coefficient = 0.01;  ///< Coefficient of skin friction.
-  double linear_across = 0;         ///< N s/m per metre of rod.
+  double linear_across = 0;         ///< Linear drag across the rod, N s/m per metre of rod.
   double linear_along = 0;
   Eigen::Vector3d flow = Eigen::Vector3d::Zero();  ///< Velocity of the fluid in the base's frame, m/s.
   /// Radii of the tube around each section, at the section's base and end, m; empty: those of the elastic

@@ -15,7 +15,7 @@ namespace flexura {
 
 /// Input of a rod's tendons. Each list has one number per tendon, or is empty.
 struct TendonInput {
-  std::vector<double> tensions = {};  ///< N, at the base; >= 0.
+  std::vector<double> tensions = {};  ///< Tensions at the base, N; >= 0.
   /// Length of each tendon pulled in at the base, m, from where it is just taut on the undeformed rod. A
   /// tendon is slack if more of it is let out than the rod takes up.
   std::vector<double> displacements = {};
@@ -55,12 +55,12 @@ struct Equilibrium {
   std::optional<std::size_t> coarse_section = {};
   int iterations = 0;                  ///< Number of linear systems solved.
   Eigen::VectorXd q;                   ///< The strain modes (RodChain).
-  std::vector<double> tensions;        ///< N, at the base; 0 for slack tendons.
+  std::vector<double> tensions;        ///< Tensions at the base, N; 0 for slack tendons.
   std::vector<double> tendon_lengths;  ///< Path lengths through the rod, from base to end, m.
   std::vector<double>
       /// Length pulled in at the base, m; for a slack tendon, the displacement at which it becomes taut.
       displacements;
-  double strain_energy = 0;  ///< J
+  double strain_energy = 0;  ///< Strain energy, J.
   Pose tip;                  ///< X_BT
 
   [[nodiscard]] bool converged() const { return end == StaticsEnd::converged; }

@@ -141,7 +141,7 @@ struct RodLinear {
 /// Derivatives of (q, p, rate, force) after a step. The result of a step depends on no other internal data of
 /// the integrator.
 struct RodStepSlopes {
-  Eigen::MatrixXd by_state;  ///< With respect to (q, p, rate, force) before the step.
+  Eigen::MatrixXd by_state;  ///< Derivatives with respect to (q, p, rate, force) before the step.
   Eigen::MatrixXd by_input;
   /// Derivatives with respect to the parameters, at a constant state before the step; columns as in
   /// RodDynamicsSlopes.

@@ -61,9 +61,10 @@ const Table<MarkerMessage>& fields_of(const MarkerMessage*) {
 
 const Table<SeenValueMessage>& fields_of(const SeenValueMessage*) {
   using M = SeenValueMessage;
-  static const auto table = Table<M>("flexura.SeenValue", "Number measured in a picture.")
-                                .field("name", &M::name, {.meaning = "Name of the number, with its unit."})
-                                .field("value", &M::value, {.meaning = "The number."});
+  static const auto table =
+      Table<M>("flexura.SeenValue", "Number measured in a picture.")
+          .field("name", &M::name, {.meaning = "Name of the measured number, with its unit."})
+          .field("value", &M::value, {.meaning = "The number."});
   return table;
 }
 

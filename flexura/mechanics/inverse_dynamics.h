@@ -44,7 +44,7 @@ struct TensionFit {
 };
 
 /// Returns the tensions that come nearest to the generalized forces `desired` at q. These tensions minimise
-/// the missing energy f^T K^-1 f / 2, where f are the missing forces and K is the rod's stiffness, so forces
+/// the missing energy f^T K^-1 f / 2, where f are the missing forces and K is the rod's stiffness. So forces
 /// on stiff strains have little weight. Among several minima, the one with least effort is returned. Throws
 /// std::invalid_argument for lists of wrong length, numbers that are not finite, or a bound below 0.
 [[nodiscard]] TensionFit nearest_tensions(RodDynamics& dynamics, const Eigen::VectorXd& q,

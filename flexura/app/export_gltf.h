@@ -21,10 +21,10 @@ struct GltfExport {
 
 /// Writes the motion of a run's arm as a binary glTF 2.0 file. The arm is an animated tube with a skin on
 /// joints along the backbone. The file also has the cameras and obstacles. The file shows the true arm if the
-/// log contains it, otherwise the commanded arm. It has 30 poses per second, but at most 3000 poses. `file`:
-/// the new file; empty: arm.glb in the new folder RESULTS/gltf (gltf-2, ... if it exists). `progress` may be
-/// null. Throws InputError if `results` is not a run's folder or its log is damaged, std::runtime_error if
-/// the file exists or cannot be written.
+/// log contains it, otherwise the commanded arm. The file has 30 poses per second, but at most 3000 poses.
+/// `file`: the new file; empty: arm.glb in the new folder RESULTS/gltf (gltf-2, ... if it exists). `progress`
+/// may be null. Throws InputError if `results` is not a run's folder or its log is damaged,
+/// std::runtime_error if the file exists or cannot be written.
 GltfExport export_gltf(const std::filesystem::path& results, const std::filesystem::path& file,
                        Progress* progress = nullptr);
 

@@ -26,8 +26,8 @@ void add_lid(const TubeRing& ring, TipKind kind, double side, GltfMesh& mesh);
 [[nodiscard]] GltfMesh ball_mesh(double radius);
 /// Returns a box centred at the origin with these half edge lengths, m.
 [[nodiscard]] GltfMesh box_mesh(const Eigen::Vector3d& half_sizes);
-/// Returns a capsule centred at the origin. Its axis is a segment along z of the given length; radius and
-/// length in m.
+/// Returns a capsule centred at the origin. The axis of the capsule is a segment along z of the given length;
+/// radius and length in m.
 [[nodiscard]] GltfMesh capsule_mesh(double radius, double length);
 /// Returns a square in the xy plane centred at the origin. `half` is half its edge length, m.
 [[nodiscard]] GltfMesh square_mesh(double half);

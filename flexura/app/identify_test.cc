@@ -195,7 +195,7 @@ TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
   EXPECT_THAT(refused({.experiment = step_response, .motion = results(), .from = 50}),
               HasSubstr("has no true arm states (/arm/truth)"));
   EXPECT_THAT(refused({.experiment = step_response, .motion = results(), .to = 0.05}),
-              HasSubstr("samples of a motion: expected at least"));
+              HasSubstr("samples: expected at least"));
   EXPECT_EQ(refused({.experiment = step_response, .motion = results(), .from = 2, .to = 1}),
             "--from: 2 s is not before --to, 1 s: expected an earlier time");
   EXPECT_THAT(refused({.experiment = step_response, .motion = results(), .to = std::nan("")}),
@@ -209,7 +209,7 @@ TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
       HasSubstr("has an arm with its base 0.8 m from the base of the experiment's arm"));
   EXPECT_THAT(
       refused({.experiment = step_response, .motion = results(), .sets = {"arm.section.0.length=0.3"}}),
-      HasSubstr("no shape of the rod comes near to the places"));
+      HasSubstr("no shape of the rod is near the measured places"));
   EXPECT_THAT(
       refused({.experiment = checkout_file("examples/01_paper_arm/experiment.toml"), .motion = results()}),
       HasSubstr("arm.section[0]: has no material"));

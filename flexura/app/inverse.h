@@ -12,7 +12,7 @@ namespace flexura {
 /// or "rotation":[w,x,y,z], or an object {"curve":[[x,y,z],...]}. Both may have "prefer", "start" and "all"
 /// (docs/command-line.md). The answer is one line of JSON without its line end:
 /// {"converged":..,"reason":..,"bends":[[bx,by],...],"stretches":[..],"position_error":..,"angle_error":..}.
-/// For a planar arm it has "archings" instead of "bends". If the search did not converge, it also has
+/// For a planar arm the answer has "archings" instead of "bends". If the search did not converge, it also has
 /// "nearest" and "distance"; with "all" it also has "solutions". The answer to a line with an error is
 /// {"error":"..."}. Never throws because of the line's contents.
 [[nodiscard]] std::string answer_inverse(const ArmModel& arm, std::string_view line);

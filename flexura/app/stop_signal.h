@@ -7,8 +7,8 @@
 
 namespace flexura {
 
-/// Waits for SIGINT or SIGTERM on its own thread. During its lifetime, the creating thread and the threads
-/// started by it do not receive these signals. Only one StopSignal may exist at a time.
+/// Waits for SIGINT or SIGTERM on its own thread. During the lifetime of this object, the creating thread and
+/// the threads started by it do not receive these signals. Only one StopSignal may exist at a time.
 class StopSignal {
  public:
   /// Starts to wait. Every received signal calls `on_stop` on the waiting thread.

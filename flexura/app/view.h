@@ -34,7 +34,7 @@ struct ViewArguments {
 /// Serves a viewer and prints its address to `out`. Returns after SIGINT or SIGTERM.
 int view_command(const ViewArguments& arguments, std::ostream& out, std::ostream& err);
 
-/// A viewer that starts with `start`. Prints its address to `out` and opens it in a browser.
+/// A viewer that starts with `start`. Prints the viewer's address to `out` and opens it in a browser.
 class OpenViewer {
  public:
   OpenViewer(ViewStart start, const ViewerArguments& arguments, std::ostream& out);

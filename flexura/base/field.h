@@ -46,8 +46,8 @@ struct Count {
   std::size_t max = std::numeric_limits<std::size_t>::max();
 };
 
-/// Description of one field in a table of fields. It does not include the member that stores the field's
-/// value.
+/// Description of one field in a table of fields. The description does not include the member that stores the
+/// field's value.
 struct Spec {
   /// Meaning of the field, a sentence for error messages, the schema and the reference page.
   std::string meaning = {};

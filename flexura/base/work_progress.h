@@ -10,7 +10,7 @@
 namespace flexura {
 
 /// Progress of a job that consists of several pieces of work. The job's fraction is the completed share of
-/// all work. It does not depend on the order of the pieces, and never decreases.
+/// all work. The fraction does not depend on the order of the pieces, and never decreases.
 class WorkProgress {
  public:
   /// `weights` is the amount of work of each piece, in any common unit; only the ratios matter. Negative

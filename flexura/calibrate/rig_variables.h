@@ -89,11 +89,11 @@ class RigVariables {
   [[nodiscard]] double value(const Eigen::VectorXd& x, std::size_t slot) const {
     return slots_[slot].column < 0 ? 0.0 : x[slots_[slot].column];
   }
-  /// Returns the values of `slot` and the next slot.
+  /// Returns the values of the variables in `slot` and in the slot after it.
   [[nodiscard]] Eigen::Vector2d value2(const Eigen::VectorXd& x, std::size_t slot) const {
     return {value(x, slot), value(x, slot + 1)};
   }
-  /// Returns the values of `slot` and the next two slots.
+  /// Returns the values of the variables in `slot` and in the two slots after it.
   [[nodiscard]] Eigen::Vector3d value3(const Eigen::VectorXd& x, std::size_t slot) const {
     return {value(x, slot), value(x, slot + 1), value(x, slot + 2)};
   }

@@ -60,7 +60,7 @@ class DistributedArm {
   // For the current state:
 
   [[nodiscard]] double kinetic_energy() const;  ///< Returns the kinetic energy T, J.
-  /// Returns the potential energy of gravity V_g, J. It is 0 if all mass is at the base.
+  /// Returns the potential energy of gravity V_g, J. V_g is 0 if all mass is at the base.
   [[nodiscard]] double gravity_energy() const;
   [[nodiscard]] double elastic_energy() const;  ///< Returns the elastic energy V_e, J.
   /// Returns the dissipated power, W; >= 0.

@@ -18,7 +18,7 @@ struct ImageLawGains {
 
 /// Command of a law, and the condition of its Jacobian.
 struct ImageStep {
-  /// Next command. It is within the sections' limits; a limiter must check the other limits.
+  /// Next command. The command is within the sections' limits; a limiter must check the other limits.
   ArmState asked;
   /// Ratio of the least to the greatest singular value of the Jacobian. The value is a lower bound of the
   /// ratio and, for n variables, at least 1/n of the ratio. Values up to 1e-5 are exact.

@@ -16,8 +16,8 @@ struct PixelFeature {
 /// points at the camera.
 [[nodiscard]] PixelFeature chord_angle(const Eigen::Vector2d& from, const Eigen::Vector2d& to);
 
-/// Moments of the image of a curve, given as a polyline. They are integrals over the arc length in the image.
-/// They do not need the correspondence between pixels and points of the arm.
+/// Moments of the image of a curve, given as a polyline. Moments are integrals over the arc length in the
+/// image. Moments do not need the correspondence between pixels and points of the arm.
 struct CurveMoments {
   /// Length (px), centroid u, v (px), and central second moments uu, uv, vv, each divided by the length
   /// (px^2).

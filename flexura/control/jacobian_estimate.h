@@ -31,9 +31,9 @@ class BroydenEstimate {
 class RecursiveEstimate {
  public:
   /// `forgetting` in (0, 1]: factor by which each new motion multiplies the weights of earlier motions.
-  /// `max_variance` > 0: initial variance of J, in units of motion^-2. It is also an upper limit: without it,
-  /// the covariance would grow without bound while the arm rests. Throws std::invalid_argument for numbers
-  /// that are out of range or not finite.
+  /// `max_variance` > 0: initial variance of J, in units of motion^-2. This variance is also an upper limit:
+  /// without the limit, the covariance would grow without bound while the arm rests. Throws
+  /// std::invalid_argument for numbers that are out of range or not finite.
   explicit RecursiveEstimate(Eigen::MatrixXd J, double forgetting = 0.95, double max_variance = 1e4,
                              double least = 1e-6);
 

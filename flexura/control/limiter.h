@@ -51,8 +51,8 @@ struct LimiterFault {
 };
 
 /// Limits commands between a law and an arm's drives. Whatever the law's command, the command that is sent:
-///   - Is finite and within the arm's limits of bends, stretches and folding. It changes within the rate
-///     limits of bends and stretches.
+///   - Is finite and within the arm's limits of bends, stretches and folding. The sent command changes within
+///     the rate limits of bends and stretches.
 ///   - Respects the motors' limits of speed, step rate and acceleration, without backlash and rounding.
 ///     Respects the motors' limits of position, with backlash and rounding.
 ///   - Allows the arm to brake to rest within all these limits. With `looks_ahead`, this braking path is free
@@ -74,8 +74,8 @@ class CommandLimiter {
   /// linearisation is too inexact, the command is between the braking command and the nearest one.
   [[nodiscard]] LimitedCommand next(const ArmState& asked);
   /// Returns a shorter step towards the law's command, so that every motor can brake to its target at half
-  /// its largest acceleration. It is meant for laws that reduce the error in each step by the share `rate`
-  /// (1/s) times the step's duration. Returns `asked` if no motor has an acceleration limit.
+  /// its largest acceleration. This function is meant for laws that reduce the error in each step by the
+  /// share `rate` (1/s) times the step's duration. Returns `asked` if no motor has an acceleration limit.
   [[nodiscard]] ArmState within_braking(const ArmState& asked, double rate) const;
   /// Returns the command for the next step on the braking path.
   [[nodiscard]] LimitedCommand brake();

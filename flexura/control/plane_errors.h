@@ -4,8 +4,8 @@
 
 namespace flexura {
 
-/// A direction e(s) in two parallel projections, rad. Its angle in the plane XOY is alpha_1, from Y towards
-/// X. Its angle in the plane ZOY is alpha_2, from Y towards Z.
+/// A direction e(s) in two parallel projections, rad. The direction's angle in the plane XOY is alpha_1, from
+/// Y towards X. The direction's angle in the plane ZOY is alpha_2, from Y towards Z.
 struct PlaneView {
   double alpha_1 = 0;
   double alpha_2 = 0;

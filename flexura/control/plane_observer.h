@@ -11,8 +11,8 @@ namespace flexura {
 
 /// Observes a distributed arm in two parallel projections and computes its errors from a target
 /// (docs/control.md, eq. 14 and 15). Where the projections do not determine the errors (planes_determine) or
-/// contradict each other (planes_contradict), points are triangulated from both pictures. There, theta and q
-/// are measured directly, with equal noise.
+/// contradict each other (planes_contradict), points are triangulated from both pictures. At these points,
+/// theta and q are measured directly, with equal noise.
 class PlaneObserver {
  public:
   /// Makes an observer for arms that have the model of `arm`. `target`: coordinates of the target. `noise`:
@@ -28,8 +28,8 @@ class PlaneObserver {
   [[nodiscard]] const Eigen::VectorXd& e_theta() const { return e_theta_; }
   /// Returns the errors of q at the points in the last measurement, measured minus desired, rad.
   [[nodiscard]] const Eigen::VectorXd& e_q() const { return e_q_; }
-  /// Returns the coordinates of the last measurement. Their angles are the least-squares fit to the measured
-  /// angles along the arm. Their lengths are the true lengths.
+  /// Returns the coordinates of the last measurement. The angles in these coordinates are the least-squares
+  /// fit to the measured angles along the arm. The lengths in these coordinates are the true lengths.
   [[nodiscard]] const Eigen::VectorXd& coordinates() const { return coordinates_; }
   /// Returns the share of triangulated points in all measurements.
   [[nodiscard]] double triangulated() const;

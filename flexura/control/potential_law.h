@@ -42,7 +42,7 @@ class PotentialLaw {
   /// std::invalid_argument for numbers that are not finite, and for a target whose size does not fit the arm.
   PotentialLaw(const DistributedArm& arm, Eigen::VectorXd target, const PotentialGains& gains);
 
-  /// Returns the violated conditions of the theory in words. If it is empty, W decreases for certain.
+  /// Returns the violated conditions of the theory in words. If the list is empty, W decreases for certain.
   [[nodiscard]] std::vector<std::string> violations() const;
 
   /// Computes the generalized forces Q on an arm that is set to the state (x, v).
@@ -53,7 +53,7 @@ class PotentialLaw {
   void force_of_errors(const DistributedArm& arm, const Eigen::VectorXd& e_theta, const Eigen::VectorXd& e_q,
                        const Eigen::VectorXd& x, const Eigen::VectorXd& v, Eigen::VectorXd& Q) const;
 
-  /// Returns Pi of an arm that is set to the state x, J. It includes V_e if elasticity is shaped.
+  /// Returns Pi of an arm that is set to the state x, J. Pi includes V_e if elasticity is shaped.
   [[nodiscard]] double potential(const DistributedArm& arm, const Eigen::VectorXd& x) const;
   /// Returns the power removed by the law, W: int (theta_t, q_t) K (theta_t, q_t) ds + k sum u_t^2.
   [[nodiscard]] double dissipation(const Eigen::VectorXd& v) const { return v.dot(damping_ * v); }

@@ -28,7 +28,7 @@ struct PredictiveLimit {
 
 /// Input of a step of the law: the state of an arm, and its target from now on.
 struct PredictiveState {
-  ArmState sent;     ///< Last command. The drives have reached it.
+  ArmState sent;     ///< Last command. The drives have reached this command.
   ArmState rate;     ///< Rate at which commands changed in the last step: bends in rad/s, stretches in 1/s.
   ArmState rest;     ///< Shape of the arm at rest under `sent`.
   ArmState desired;  ///< Target shape now.
@@ -50,8 +50,8 @@ struct PredictiveState {
 /// derivative and excite the modes, which oscillate freely in between. Limits are those of bends and bend
 /// rates, and the given linear ones (PredictiveLimit); stretches are not limited. The solver is the
 /// alternating direction method of multipliers (S. Boyd et al., 2011), with projections on discs and
-/// half-spaces. Its iterations satisfy the limits approximately. The next command satisfies those of bends
-/// and rates exactly. A limiter must check it.
+/// half-spaces. The iterations of this method satisfy the limits approximately. The next command satisfies
+/// those of bends and rates exactly. A limiter must check it.
 class PredictiveLaw {
  public:
   /// `driven`: the arm in terms of the sections that the drives bend. `shaped`: the arm with one section per

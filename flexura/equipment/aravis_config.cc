@@ -9,7 +9,7 @@ const Table<AravisConfig>& fields_of(const AravisConfig*) {
           .field("device", &AravisConfig::device,
                  {.meaning = "The camera's name as `arv-tool-0.8` lists it, or the address of a GigE Vision "
                              "camera.",
-                  .default_text = "the first camera that is found"})
+                  .default_text = "the first camera found"})
           .field("exposure", &AravisConfig::exposure,
                  {.meaning = "Exposure time.",
                   .unit = Unit::second,
@@ -18,18 +18,20 @@ const Table<AravisConfig>& fields_of(const AravisConfig*) {
           .field("gain", &AravisConfig::gain,
                  {.meaning = "Gain in the camera's unit, mostly dB.", .default_text = "as set in the camera"})
           .field("packet_size", &AravisConfig::packet_size,
-                 {.meaning = "Size of GigE Vision packets, bytes; 0: the largest that the network takes.",
+                 {.meaning =
+                      "Size of GigE Vision packets, bytes; 0: the largest size that the network supports.",
                   .range = between(0, 16384)})
           .field(
               "packet_socket", &AravisConfig::packet_socket,
-              {.meaning = "Whether GigE Vision packets are taken from the network interface directly if the "
-                          "program has the right to. Not for a camera on the same machine."})
+              {.meaning =
+                   "Whether the program reads GigE Vision packets directly from the network interface, if it "
+                   "has the permission. Use false for a camera that is simulated on the same computer."})
           .field("silence", &AravisConfig::silence,
-                 {.meaning = "Time without a frame after which the connection is made again.",
+                 {.meaning = "Time without a frame after which the program reconnects.",
                   .unit = Unit::second,
                   .range = between(0.1, 600)})
           .field("longest_pause", &AravisConfig::longest_pause,
-                 {.meaning = "Longest pause before a new connection.",
+                 {.meaning = "Longest pause between two attempts to connect.",
                   .unit = Unit::second,
                   .range = between(0.1, 600)});
   return table;

@@ -14,13 +14,14 @@
 
 namespace flexura {
 
-/// What a camera has delivered since its start.
+/// Numbers of frames and connections of a camera since its start.
 struct CameraCounts {
-  std::int64_t frames = 0;  ///< Frames that arrived whole.
-  /// Frames that the camera took but that did not arrive, or arrived damaged. During an outage they are
-  /// estimated from its length and the frame rate.
+  std::int64_t frames = 0;  ///< Number of frames that arrived complete.
+  /// Number of frames that the camera took but that did not arrive, or arrived damaged. During an outage the
+  /// number is estimated from the frame rate and the length of the outage.
   std::int64_t lost = 0;
-  std::int64_t connections = 0;  ///< Connections that delivered frames; above 1 after a reconnection.
+  std::int64_t connections =
+      0;  ///< Number of connections that delivered frames; above 1 after a reconnection.
 };
 
 /// A camera that counts lost frames. All functions may be called from several threads.
@@ -39,24 +40,26 @@ struct TakenPicture {
 
 /// Why a connection to a camera ended.
 struct ConnectionEnd {
-  PortFault fault;        ///< Its text has the camera's name and says what to do.
-  bool is_final = false;  ///< Whether a new connection makes no sense, for example after a file's end.
+  PortFault fault;        ///< Fault, whose text names the camera and says what to do.
+  bool is_final = false;  ///< Whether a reconnection is useless, for example after the end of a video file.
 };
 
-/// Time without a connection to a camera.
+/// Pauses between the attempts to reconnect to a camera.
 struct CameraPatience {
-  double first_pause = 0.25;  ///< Pause before the first new connection, s, >= 0. It doubles each time.
-  double longest_pause = 5;   ///< Longest pause, s.
+  double first_pause =
+      0.25;  ///< Pause before the first attempt, s, >= 0. The pause doubles after each attempt.
+  double longest_pause = 5;  ///< Longest pause, s.
 };
 
-/// A camera whose pictures arrive in a thread of their own, in which lost connections are made again.
+/// A camera whose pictures are received by a separate thread. This thread also reconnects after a connection
+/// was lost.
 class CameraFeed : public CountedCamera {
  public:
   /// Connects to the camera and puts pictures into the feed until the connection fails or is_over().
   using Connection = std::function<ConnectionEnd(CameraFeed&)>;
 
-  /// Starts the thread. `name` is for messages. `frame_rate`, Hz, > 0. `clock` gives the times at which
-  /// frames are received, in any thread, and must outlive this object.
+  /// Starts the thread. `name` is for messages. `frame_rate`, Hz, > 0. `clock` is read when frames are
+  /// received, in any thread, and must outlive this object.
   CameraFeed(std::string name, double frame_rate, const ClockPort& clock, Connection connection,
              const CameraPatience& patience = {});
   /// Ends the connection and the thread.
@@ -66,9 +69,9 @@ class CameraFeed : public CountedCamera {
   Outcome<std::optional<Frame>> wait(double timeout) override;
   [[nodiscard]] CameraCounts counts() const override;
 
-  /// For connections: adds a picture; callable in any thread.
+  /// For connections: adds a picture. May be called from any thread.
   void put(TakenPicture taken);
-  /// For connections: returns whether to end.
+  /// For connections: returns whether the connection must end.
   [[nodiscard]] bool is_over() const;
   /// For connections: sleeps for `duration`, s, or until is_over(). Returns is_over().
   bool sleep(double duration);

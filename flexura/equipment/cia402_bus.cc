@@ -87,8 +87,8 @@ PortFault CanopenBus::missing() const {
         "does not answer because it is pre-operational and has probably restarted; check its supply, start "
         "the drives and home them again");
   const double age = clock_.now() - node.heard;
-  const std::string heard =
-      node.heard < 0 ? "it has sent no heartbeat" : fmt::format("its last heartbeat came {:.1f} s ago", age);
+  const std::string heard = node.heard < 0 ? "it has sent no heartbeat"
+                                           : fmt::format("its last heartbeat arrived {:.1f} s ago", age);
   return fault(i, FaultKind::link_lost,
                fmt::format("does not answer ({}); {}", heard,
                            trouble_.empty() ? "check its supply, the wiring and the speed of the bus"

@@ -15,23 +15,24 @@
 
 namespace flexura {
 
-/// What a program has heard of a node.
+/// State of a node, as known from its messages.
 struct CanopenNode {
   std::uint8_t number = 1;
-  unsigned round = 0;                  ///< SYNC after which TPDO 1 came last.
-  std::uint16_t statusword = 0;        ///< Of TPDO 1.
-  std::int32_t position = 0;           ///< Of TPDO 1, in the drive's units.
-  NmtState state = NmtState::boot_up;  ///< Of the last heartbeat.
+  unsigned round = 0;                  ///< Number of the SYNC before the last TPDO 1 of the node.
+  std::uint16_t statusword = 0;        ///< Statusword in the last TPDO 1.
+  std::int32_t position = 0;           ///< Position in the last TPDO 1, in the drive's units.
+  NmtState state = NmtState::boot_up;  ///< State in the last heartbeat.
   double heard = -1;                   ///< Time when its last heartbeat was read, s; below 0: never.
-  bool has_restarted = false;          ///< Whether it has booted since the flag was cleared.
+  bool has_restarted = false;          ///< Whether the node has booted since the flag was cleared.
   Emergency emergency = {};            ///< Last emergency; code 0: none.
 };
 
-/// The program's end of a CANopen bus: sends frames, and waits for answers within their time. For one thread.
+/// The program's side of a CANopen bus, which sends frames and waits for answers with a timeout. Only one
+/// thread may use it.
 class CanopenBus {
  public:
-  /// Answers are awaited for `timeout` s, requests sent up to `tries` times. Link and clock must outlive this
-  /// object.
+  /// The bus waits for each answer for `timeout` s, and sends each request up to `tries` times. Link and
+  /// clock must outlive this object.
   CanopenBus(Link& link, const ClockPort& clock, const std::vector<std::uint8_t>& nodes, double timeout,
              int tries);
 
@@ -43,9 +44,9 @@ class CanopenBus {
   void set_interrupt(std::function<bool()> interrupt) { interrupt_ = std::move(interrupt); }
 
   [[nodiscard]] CommandOutcome send(const CanFrame& frame) { return link_.write(bytes_of(frame)); }
-  /// Takes the frames that have arrived.
+  /// Processes the frames that have arrived.
   [[nodiscard]] CommandOutcome drain();
-  /// Takes frames for `duration` s.
+  /// Processes arriving frames for `duration` s.
   [[nodiscard]] CommandOutcome pause(double duration);
   /// Sends SYNC until TPDO 1 of each node has answered. Returns the time of the last SYNC, s.
   [[nodiscard]] Outcome<double> synchronise();
@@ -54,7 +55,7 @@ class CanopenBus {
   [[nodiscard]] Outcome<SdoTransfer> read(std::size_t i, ObjectAddress object);
   /// Writes an object. An abort by the node is a fault.
   [[nodiscard]] CommandOutcome write(std::size_t i, ObjectAddress object, std::uint32_t value, int size);
-  /// Runs a transfer; succeeds also if the node aborts it.
+  /// Runs a transfer. An abort by the node is not a fault here.
   [[nodiscard]] Outcome<SdoTransfer> run(std::size_t i, const SdoTransfer& transfer, ObjectAddress object);
 
   /// Returns a fault that names the node with index `i`.

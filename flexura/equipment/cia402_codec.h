@@ -11,8 +11,8 @@ namespace flexura {
 
 /// A frame of classical CAN.
 struct CanFrame {
-  std::uint32_t id = 0;                ///< Identifier without flags; of an error frame: its classes.
-  std::uint8_t size = 0;               ///< Bytes in `data`, 0 to 8.
+  std::uint32_t id = 0;   ///< Identifier without flags; for an error frame: the classes of errors.
+  std::uint8_t size = 0;  ///< Bytes in `data`, 0 to 8.
   std::array<std::uint8_t, 8> data{};  ///< Bytes beyond `size` are 0.
   bool is_extended = false;            ///< Whether the identifier has 29 bits. CANopen has 11.
   bool is_remote = false;              ///< Whether this requests a frame.
@@ -21,16 +21,17 @@ struct CanFrame {
   bool operator==(const CanFrame&) const = default;
 };
 
-inline constexpr std::size_t can_frame_size = 16;  ///< Bytes of a frame of SocketCAN (struct can_frame).
+inline constexpr std::size_t can_frame_size = 16;  ///< Size of a SocketCAN frame (struct can_frame), bytes.
 
-/// Returns the bytes that SocketCAN takes.
+/// Returns the frame in the format of SocketCAN.
 [[nodiscard]] std::string bytes_of(const CanFrame& frame);
-/// Returns the frame in the bytes that SocketCAN gives, or std::nullopt if they are not exactly one frame.
+/// Returns the frame in bytes that were read from SocketCAN, or std::nullopt if they are not exactly one
+/// frame.
 [[nodiscard]] std::optional<CanFrame> parse_can_frame(std::string_view bytes);
 /// Returns what an error frame reports, for example "bus off". Source: Linux, linux/can/error.h.
 [[nodiscard]] std::string can_error_text(const CanFrame& frame);
 
-/// Adds the `size` lowest bytes of a number, lowest first, as far as there is place.
+/// Appends the `size` lowest bytes of a number, lowest byte first, as far as the frame has space.
 void append(CanFrame& frame, std::uint32_t number, int size);
 /// Returns the unsigned number of `size` bytes, 1 to 4, from byte `at` on. Missing bytes count as 0.
 [[nodiscard]] std::uint32_t number_at(const CanFrame& frame, std::size_t at, int size);
@@ -56,7 +57,7 @@ enum class NmtState : std::uint8_t {
   operational = 0x05,
   pre_operational = 0x7F
 };
-/// Returns "operational", ..., or "unknown".
+/// Returns the name of a state, for example "operational"; "unknown" for other numbers.
 [[nodiscard]] std::string_view name_of(NmtState state);
 
 /// Returns the frame of a command; node 0: for all nodes.
@@ -66,13 +67,13 @@ enum class NmtState : std::uint8_t {
 /// Returns the heartbeat of a node.
 [[nodiscard]] CanFrame heartbeat_frame(std::uint8_t node, NmtState state);
 
-/// Place in the dictionary of objects of a node.
+/// Address in the object dictionary of a node.
 struct ObjectAddress {
   std::uint16_t index = 0;
   std::uint8_t sub = 0;
   bool operator==(const ObjectAddress&) const = default;
 };
-/// Returns "0x607A" or "0x607D:1".
+/// Returns the address as text, for example "0x607A" or "0x607D:1".
 [[nodiscard]] std::string text(ObjectAddress object);
 
 /// Abort codes of SDO transfers that this program itself sends (CiA 301, table 22).
@@ -86,9 +87,9 @@ inline constexpr std::uint32_t toggle = 0x05030000, unknown_command = 0x05040001
 /// Returns the meaning of an abort code of an SDO transfer (CiA 301, table 22), with the code.
 [[nodiscard]] std::string sdo_abort_text(std::uint32_t code);
 
-/// A node's report of an error or of its end.
+/// A node's report of an error, or of the end of an error.
 struct Emergency {
-  std::uint16_t code = 0;     ///< Error code as in object 0x603F; 0: no error any more.
+  std::uint16_t code = 0;     ///< Error code as in object 0x603F; 0: the error has ended.
   std::uint8_t registry = 0;  ///< Error register, object 0x1001.
 };
 /// Returns the emergency in a frame.
@@ -112,7 +113,7 @@ enum class DriveState {
 };
 /// Returns the state in a statusword, object 0x6041.
 [[nodiscard]] DriveState drive_state(std::uint16_t statusword);
-/// Returns "operation enabled", ...
+/// Returns the name of a state, for example "operation enabled".
 [[nodiscard]] std::string_view name_of(DriveState state);
 /// Returns the bits of a statusword that show a state.
 [[nodiscard]] std::uint16_t statusword_of(DriveState state);

@@ -72,30 +72,34 @@ std::string problem_of(const Cia402Config& config) {
 const Table<Cia402AxisConfig>& fields_of(const Cia402AxisConfig*) {
   using Axis = Cia402AxisConfig;
   static const auto table =
-      Table<Axis>("cia402_axis", "An axis with a CANopen drive (CiA 402) of its own.")
+      Table<Axis>("cia402_axis", "An axis with its CANopen drive (CiA 402).")
           .field("node", &Axis::node,
                  {.meaning = "Number of the drive's node.", .range = between(1, 127), .required = true})
           .field("limits", &Axis::limits, {.meaning = "Smallest and largest position, microsteps."})
           .field("max_rate", &Axis::max_rate, {.meaning = "Largest speed, microsteps/s.", .range = above(0)})
           .field("max_acceleration", &Axis::max_acceleration,
-                 {.meaning = "Acceleration and braking, microsteps/s^2.", .range = above(0)})
+                 {.meaning = "Acceleration and deceleration of motions, microsteps/s^2.", .range = above(0)})
           .field("stop_deceleration", &Axis::stop_deceleration,
-                 {.meaning = "Braking of a quick stop, microsteps/s^2.", .range = above(0)})
+                 {.meaning = "Deceleration of a quick stop, microsteps/s^2.", .range = above(0)})
           .field("position_unit", &Axis::position_unit,
-                 {.meaning = "Units of the drive's positions per microstep; negative: the other direction."})
+                 {.meaning = "Number of the drive's position units per microstep; negative if the drive "
+                             "counts in the opposite direction."})
           .field("velocity_unit", &Axis::velocity_unit,
-                 {.meaning = "Units of the drive's velocities (0x6081) per microstep/s.", .range = above(0)})
-          .field("acceleration_unit", &Axis::acceleration_unit,
-                 {.meaning = "Units of the drive's accelerations (0x6083) per microstep/s^2.",
+                 {.meaning = "Number of the drive's velocity units (object 0x6081) per microstep/s.",
                   .range = above(0)})
-          .field(
-              "homing_method", &Axis::homing_method,
-              {.meaning = "Homing method (0x6098); 0: the axis is not homed.", .range = between(-128, 127)})
+          .field("acceleration_unit", &Axis::acceleration_unit,
+                 {.meaning = "Number of the drive's acceleration units (object 0x6083) per microstep/s^2.",
+                  .range = above(0)})
+          .field("homing_method", &Axis::homing_method,
+                 {.meaning = "Homing method (object 0x6098); 0: the axis is not homed.",
+                  .range = between(-128, 127)})
           .field("homing_rates", &Axis::homing_rates,
-                 {.meaning = "Speeds towards and at the home switch, microsteps/s.", .range = above(0)})
-          .field("home", &Axis::home, {.meaning = "Position at the home position, microsteps."})
+                 {.meaning = "Two homing speeds: towards the home switch, and near the switch, microsteps/s.",
+                  .range = above(0)})
+          .field("home", &Axis::home, {.meaning = "Motor position at the home position, microsteps."})
           .field("following_window", &Axis::following_window,
-                 {.meaning = "Following error that is a fault, microsteps; 0: as set in the drive.",
+                 {.meaning = "Following error above which the drive reports a fault, microsteps; 0: as set "
+                             "in the drive.",
                   .range = at_least(0)})
           .check([](const Axis& axis, Reader& reader) {
             if (const std::string problem = cia402_axis_problem(axis); !problem.empty())
@@ -112,35 +116,40 @@ const Table<Cia402Config>& fields_of(const Cia402Config*) {
           .field("axes", &Config::axes,
                  {.meaning = "Drives in the order of the axes.", .count = {1, 15}, .required = true})
           .field("answer_timeout", &Config::answer_timeout,
-                 {.meaning = "Time that a node has to answer.",
+                 {.meaning = "Longest wait for the answer of a node.",
                   .unit = Unit::second,
                   .range = above_up_to(0, 3600)})
           .field("tries", &Config::tries,
-                 {.meaning = "How often a request is sent before the node counts as lost.",
+                 {.meaning = "Number of times that a request is sent before the node counts as lost.",
                   .range = between(1, 10)})
           .field("heartbeat", &Config::heartbeat,
                  {.meaning = "Period of the nodes' heartbeats.",
                   .unit = Unit::second,
                   .range = between(0.01, 60)})
           .field("host_timeout", &Config::host_timeout,
-                 {.meaning = "Drives make a quick stop by themselves after this time without a heartbeat of "
-                             "the program; 0: never.",
+                 {.meaning = "Time without a heartbeat of the program after which the drives make a quick "
+                             "stop by themselves; 0: never.",
                   .unit = Unit::second,
                   .range = between(0, 60)})
           .field("host_node", &Config::host_node,
-                 {.meaning = "Number of the program as a node.", .range = between(1, 127)})
-          .field("window", &Config::window,
-                 {.meaning = "Largest distance to the target at rest, microsteps.", .range = at_least(0.5)})
+                 {.meaning = "Node number of the program.", .range = between(1, 127)})
+          .field(
+              "window", &Config::window,
+              {.meaning =
+                   "Largest distance from the target at which an axis at rest counts as arrived, microsteps.",
+               .range = at_least(0.5)})
           .field("settling", &Config::settling,
-                 {.meaning = "Time that an axis may take longer than expected.",
+                 {.meaning = "Time by which an axis may arrive later than expected.",
                   .unit = Unit::second,
                   .range = above_up_to(0, 3600)})
           .field("power_timeout", &Config::power_timeout,
-                 {.meaning = "Time to switch the motors on.",
+                 {.meaning = "Longest wait until the motors are switched on.",
                   .unit = Unit::second,
                   .range = above_up_to(0, 3600)})
           .field("homing_timeout", &Config::homing_timeout,
-                 {.meaning = "Time to home an axis.", .unit = Unit::second, .range = above_up_to(0, 3600)})
+                 {.meaning = "Longest duration of homing an axis.",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, 3600)})
           .check([](const Config& config, Reader& reader) {
             try {
               if (parse_link_address(config.link).kind != LinkAddress::Kind::can)

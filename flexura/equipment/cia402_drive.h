@@ -16,36 +16,37 @@
 
 namespace flexura {
 
-/// What a drive says about itself.
+/// Identity of a drive, read from its objects.
 struct Cia402Identity {
-  std::string name;                ///< Object 0x1008, or "".
-  std::uint32_t vendor = 0;        ///< Object 0x1018:1.
-  std::uint32_t product = 0;       ///< Object 0x1018:2.
-  std::vector<std::string> notes;  ///< What it does not support, one sentence each.
+  std::string name;                ///< Name of the device (object 0x1008), or "".
+  std::uint32_t vendor = 0;        ///< Number of the vendor (object 0x1018:1).
+  std::uint32_t product = 0;       ///< Number of the product (object 0x1018:2).
+  std::vector<std::string> notes;  ///< Functions that the drive does not support, one sentence each.
 };
 
-/// CANopen drives of CiA 402 in profile position mode, one node per axis. Targets start on a SYNC, and
-/// positions are measured at a SYNC, so that all axes are in step.
+/// CANopen drives of CiA 402 in profile position mode, one node per axis. All axes start a motion at the same
+/// SYNC, and measure their positions at the same SYNC.
 ///
-/// start() must come first, and again after a drive has restarted, failed or lost its power. All functions
-/// may be called from several threads. halt() interrupts the others.
+/// Call start() first, and again after a drive has restarted, failed or lost its power. All functions may be
+/// called from several threads. halt() interrupts the other functions.
 class Cia402Drive : public DrivePort {
  public:
-  /// Link and clock must outlive this object. The clock gives the times of readings. Throws
+  /// Link and clock must outlive this object. Times of readings are those of the clock. Throws
   /// std::invalid_argument if the configuration cannot be used.
   Cia402Drive(Link& link, const ClockPort& clock, const Cia402Config& config);
 
-  /// Sets the drives up, resets faults and switches the motors on. Nothing moves, but motors take hold.
+  /// Configures the drives, resets faults and switches the motors on. The motors do not move; they hold their
+  /// positions.
   [[nodiscard]] CommandOutcome start();
-  /// Homes the axes that have a homing method, one after the other in their order. Waits for the end. After a
-  /// fault or a halt, start() must be called again.
+  /// Homes the axes that have a homing method, one after the other, and waits for the end. After a fault or a
+  /// halt, start() must be called again.
   [[nodiscard]] CommandOutcome home();
   /// Switches the motors off. Axes under load may move.
   [[nodiscard]] CommandOutcome release();
-  /// Sends the drives a sign of life, if Cia402Config::host_timeout is not 0. Commands and readings
-  /// do so too. Must be called at least twice in that time.
+  /// Sends the drives a heartbeat, if Cia402Config::host_timeout is not 0. Commands and readings also send
+  /// one. At least two heartbeats must be sent within `host_timeout`.
   void keep_alive();
-  /// Returns what start() has learned of the drives.
+  /// Returns the identities that start() has read from the drives.
   [[nodiscard]] std::vector<Cia402Identity> identities() const;
 
   [[nodiscard]] DriveQuantity quantity() const override { return DriveQuantity::motor_positions; }
@@ -114,9 +115,10 @@ class Cia402Drive : public DrivePort {
   std::atomic<unsigned> halts_ = 0;
 };
 
-/// Returns the frames that stop the drives. The first are a quick stop of every node by SDO and, as far as
-/// there is place, by RPDO 1 and SYNC. Then, after `delay` s, follows the NMT command "stop" to all nodes.
-/// The drives hold their positions if start() has set them up. After that, start() must be called again.
+/// Returns the frames that stop the drives. The first frames are a quick stop of every node by SDO and, if
+/// there is space, also by RPDO 1 and SYNC. The NMT command "stop" to all nodes follows after `delay` s.
+/// Drives that start() has configured then hold their positions. After such a stop, start() must be called
+/// again.
 [[nodiscard]] StopMessages cia402_stop(const Cia402Config& config, double delay = 0.2);
 
 }  // namespace flexura

@@ -18,18 +18,19 @@ struct Cia402NodeConfig {
   std::uint8_t node = 1;                           ///< Number of the node.
   std::string name = "Flexura simulated stepper";  ///< Object 0x1008.
   double position = 0;                             ///< Position at power-on.
-  double home_switch = 0;                          ///< Position of the home switch, as counted from power-on.
-  bool has_home_switch = true;                     ///< Without it, homing methods other than 35 and 37 fail.
+  double home_switch = 0;  ///< Position of the home switch, in the coordinates valid at power-on.
+  bool has_home_switch =
+      true;  ///< Whether there is a home switch. Without a switch, homing methods other than 35 and 37 fail.
 };
 
 /// How a simulated drive misbehaves.
 enum class Cia402Defect {
   none,
-  ignores_targets,  ///< Acknowledges targets, and does not move.
-  lies,             ///< Acknowledges targets, does not move and says that it has reached them.
+  ignores_targets,  ///< The drive acknowledges targets, but does not move.
+  lies,             ///< The drive does not move, but reports that it has reached its targets.
   blocked,          ///< The motor is blocked: it stands still, and the following error grows.
-  refuses_power,    ///< Does not get beyond "switched on".
-  keeps_mapping     ///< Refuses changes of the mapping of its PDOs.
+  refuses_power,    ///< The drive does not leave the state "switched on".
+  keeps_mapping     ///< The drive refuses changes of its PDO mapping.
 };
 
 /// A simulated drive of CiA 402 on a CAN bus. Supports the profile position mode, homing, RPDO 1 and 2,
@@ -40,9 +41,9 @@ class Cia402Node {
   Cia402Node(const Cia402Node&) = delete;
   Cia402Node& operator=(const Cia402Node&) = delete;
 
-  /// Takes a frame of the bus at time `now`, s; adds the node's frames to `out`.
+  /// Processes a frame of the bus at time `now`, s. Appends the frames that the node sends to `out`.
   void receive(const CanFrame& frame, double now, std::vector<CanFrame>& out);
-  /// Adds the frames that the node sends unasked.
+  /// Appends to `out` the frames that the node sends on its own at time `now`, s, for example heartbeats.
   void advance(double now, std::vector<CanFrame>& out);
 
   /// Returns the position at `now`, in the drive's units.
@@ -56,7 +57,8 @@ class Cia402Node {
   /// Makes the drive fail with an error code (object 0x603F).
   void fail(std::uint16_t code, double now);
   void set_defect(Cia402Defect defect, double now);
-  /// Restarts the drive as after a loss of power: it forgets its set-up and counts from its initial position.
+  /// Restarts the drive as after a loss of power. The drive loses its configuration, and its position is the
+  /// initial one.
   void restart();
 
  private:

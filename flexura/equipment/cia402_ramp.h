@@ -4,7 +4,7 @@
 
 namespace flexura {
 
-/// Motion of an axis with trapezoidal speed, as a function of time. Units of position are the caller's.
+/// Motion of an axis with trapezoidal speed, as a function of time. The caller chooses the unit of positions.
 class Cia402Ramp {
  public:
   /// Starts at rest at a position.
@@ -12,16 +12,16 @@ class Cia402Ramp {
 
   /// Sets position and velocity at `now`, s; the axis then keeps its velocity.
   void set(double now, double position, double velocity = 0);
-  /// From `now` on, moves to `target` at up to `speed` > 0, with these values of acceleration and
-  /// deceleration > 0. An axis that cannot stop before its target comes back.
+  /// Moves to `target` from time `now`, s, on, at up to `speed` > 0, with this acceleration and deceleration
+  /// > 0. If the axis cannot stop before the target, it overshoots and returns.
   void move(double now, double target, double speed, double acceleration, double deceleration);
   /// Brakes from `now` on.
   void stop(double now, double deceleration);
 
-  /// Returns the position at `now`, not before the last command.
+  /// Returns the position at time `now`, s, which must not be before the last command.
   [[nodiscard]] double position(double now) const;
   [[nodiscard]] double velocity(double now) const;
-  /// Returns when the axis comes to rest, s.
+  /// Returns the time at which the axis comes to rest, s.
   [[nodiscard]] double end() const { return end_; }
   [[nodiscard]] bool is_moving(double now) const { return now < end_; }
 
@@ -38,9 +38,9 @@ class Cia402Ramp {
   double next_position_ = 0, next_velocity_ = 0;
 };
 
-/// Returns the speed, > 0, at which an axis goes `distance` in `duration` s and stops there. The axis starts
-/// with `velocity`, positive towards the target, and accelerates and brakes by `acceleration`. Returns `most`
-/// if the duration is too short, and never more.
+/// Returns the cruising speed, > 0, with which an axis moves by `distance` in `duration` s and stops there.
+/// The axis starts with `velocity`, positive towards the target, and accelerates and brakes with
+/// `acceleration`. The result is at most `most`; it is `most` if the duration is too short.
 [[nodiscard]] double cia402_speed(double distance, double velocity, double duration, double acceleration,
                                   double most);
 

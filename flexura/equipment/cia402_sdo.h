@@ -11,11 +11,11 @@
 // Transfers of objects by SDO (CiA 301, 7.2.4): expedited writes, expedited and segmented reads.
 namespace flexura {
 
-/// The program's side of one transfer. It does not wait: the caller sends request() whenever it has changed,
-/// and makes a new transfer if an answer is missing.
+/// The program's side of one transfer. It never waits. The caller sends request() whenever the request has
+/// changed, and starts a new transfer if an answer is missing.
 class SdoTransfer {
  public:
-  static constexpr std::size_t longest = 1024;  ///< Bytes that a read accepts.
+  static constexpr std::size_t longest = 1024;  ///< Largest number of bytes that a read accepts.
 
   /// Reads an object of a node.
   static SdoTransfer reading(std::uint8_t node, ObjectAddress object);
@@ -24,12 +24,12 @@ class SdoTransfer {
 
   /// Returns the frame to send.
   [[nodiscard]] const CanFrame& request() const { return request_; }
-  /// Takes any frame of the bus. Returns true if it brought the transfer on; then it is over or there is
-  /// another request.
+  /// Processes any frame of the bus. Returns true if the frame was an answer to this transfer. Then the
+  /// transfer is over, or request() is a new request.
   bool take(const CanFrame& frame);
   [[nodiscard]] bool is_over() const { return is_over_; }
-  /// Returns the abort code, or 0 for success. It may be the node's or this side's: then the last request
-  /// is the abort frame.
+  /// Returns the abort code, or 0 for success. If this side aborted the transfer, request() is the abort
+  /// frame.
   [[nodiscard]] std::uint32_t abort_code() const { return abort_; }
   /// Returns the bytes that were read.
   [[nodiscard]] const std::string& data() const { return data_; }
@@ -51,19 +51,20 @@ class SdoTransfer {
   std::string data_;
 };
 
-/// The node's side of transfers, one at a time.
+/// The node's side of SDO transfers. An SdoServer processes one transfer at a time.
 class SdoServer {
  public:
-  /// Bytes of an object, or an abort code.
+  /// Result of reading an object: its bytes, or an abort code.
   using ReadResult = std::variant<std::string, std::uint32_t>;
   using Read = std::function<ReadResult(ObjectAddress)>;
-  /// Returns an abort code, or 0.
+  /// Writes the bytes of an object. Returns an abort code, or 0 for success.
   using Write = std::function<std::uint32_t(ObjectAddress, const std::string& bytes)>;
 
   SdoServer(std::uint8_t node, Read read, Write write)
       : node_(node), read_(std::move(read)), write_(std::move(write)) {}
 
-  /// Returns the answer to a frame, or std::nullopt if it is no request to this node or needs no answer.
+  /// Returns the answer to a frame. Returns std::nullopt for a frame that is no request to this node, or
+  /// needs no answer.
   std::optional<CanFrame> answer(const CanFrame& request);
 
  private:

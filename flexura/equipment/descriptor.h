@@ -6,11 +6,11 @@
 
 namespace flexura {
 
-/// An open file descriptor, closed in the end.
+/// Owner of an open file descriptor, which the destructor closes.
 class Descriptor {
  public:
   Descriptor() = default;
-  /// Takes over an open descriptor, or -1 for none.
+  /// Becomes the owner of an open descriptor; -1: none.
   explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
   Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
   Descriptor& operator=(Descriptor&& other) noexcept {

@@ -17,7 +17,8 @@
 
 namespace flexura {
 
-/// How drivers reach their devices: real ones over the links of the configurations, or simulated ones.
+/// Opens the links of drivers to their devices: to real devices at the configured addresses, or to simulated
+/// devices.
 class DeviceAccess {
  public:
   virtual ~DeviceAccess() = default;
@@ -27,27 +28,26 @@ class DeviceAccess {
 
   /// Returns the clock of drives and heads.
   [[nodiscard]] virtual ClockPort& clock() = 0;
-  /// @{ Open the link of a controller, of a bus of drives, of a chain of heads, or a connection to an ONVIF
-  /// camera.
+  /// @{ Opens the link to a controller, to a bus of drives, to a chain of heads, or to an ONVIF camera.
   [[nodiscard]] virtual Outcome<std::unique_ptr<Link>> open(const GrblConfig& config) = 0;
   [[nodiscard]] virtual Outcome<std::unique_ptr<Link>> open(const Cia402Config& config) = 0;
   [[nodiscard]] virtual Outcome<std::unique_ptr<Link>> open(const ViscaBusConfig& config) = 0;
   [[nodiscard]] virtual Outcome<std::unique_ptr<Link>> open(const OnvifConfig& config) = 0;
   /// @}
-  /// Returns the system calls for a head of the kernel's video interface.
+  /// Returns the system calls for a head with Video4Linux2 controls.
   [[nodiscard]] virtual std::shared_ptr<V4l2Calls> calls(const V4l2HeadConfig& config) = 0;
-  /// Returns whether devices ask for the logins of the configurations. Simulated ones know none.
+  /// Returns whether the devices require the logins of the configurations. Simulated devices do not.
   [[nodiscard]] virtual bool wants_logins() const { return true; }
   /// Returns the guard that stops the devices when this program dies or hangs; null if nothing can move.
   [[nodiscard]] virtual Guard* guard() = 0;
 };
 
-/// The devices at the links of the configurations.
+/// Real devices, at the configured addresses.
 class RealDevices : public DeviceAccess {
  public:
-  /// Devices that nothing will move, without a guard.
+  /// Opens devices without a guard. Use this constructor only if nothing will move.
   RealDevices() = default;
-  /// Guarded devices. `watchdog`: period of the guard, s, > 0. Throws like Guard.
+  /// Opens devices that a guard protects. `watchdog`: period of the guard, s, > 0. Throws like Guard.
   explicit RealDevices(double watchdog) : guard_(std::in_place, watchdog) {}
 
   [[nodiscard]] WallClock& clock() override { return clock_; }

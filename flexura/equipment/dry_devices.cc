@@ -252,17 +252,18 @@ std::shared_ptr<V4l2Calls> DryDevices::calls(const V4l2HeadConfig& config) {
 std::vector<std::string> DryDevices::assumptions() const {
   std::vector<std::string> all;
   if (!equipment_.grbl.empty())
-    all.push_back(
-        fmt::format("Grbl controllers are taken to have {:g} steps/mm and speeds that limit nothing; the "
-                    "numbers after X, Y, Z and F follow from $100, $110 and $120 of yours",
-                    dry_steps_per_mm));
-  if (equipment_.cia402) all.emplace_back("CANopen drives are taken to stand where the arm starts");
+    all.push_back(fmt::format(
+        "Grbl controllers are assumed to have {:g} steps/mm and no speed limits; with your controllers, the "
+        "numbers after X, Y, Z and F depend on $100, $110 and $120",
+        dry_steps_per_mm));
+  if (equipment_.cia402)
+    all.emplace_back("CANopen drives are assumed to be at the positions of the arm's initial shape");
   const auto has_head = [](const CameraEquipment& one) { return one.visca || one.onvif || one.v4l2_head; };
   if (std::ranges::any_of(equipment_.camera, has_head))
-    all.emplace_back("heads are taken to stand at the cameras' first positions");
+    all.emplace_back("heads are assumed to be at the cameras' initial positions");
   if (std::ranges::any_of(equipment_.camera,
                           [](const CameraEquipment& one) { return one.onvif.has_value(); }))
-    all.emplace_back("requests to ONVIF heads are shown without the login and the media profile");
+    all.emplace_back("requests to ONVIF heads are shown without login and media profile");
   return all;
 }
 

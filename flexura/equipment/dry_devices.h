@@ -17,14 +17,14 @@
 
 namespace flexura {
 
-/// A message that a driver sends to a simulated device in the place of the real one.
+/// A message that a driver sends to a simulated device, in place of a real device.
 struct DryMessage {
   double time = 0;     ///< Time on the clock of the devices, s.
   std::string device;  ///< Address of the link.
-  std::string bytes;   ///< The message; "" for a system call.
-  SentText sent;       ///< In readable form.
+  std::string bytes;   ///< Bytes of the message; "" for a system call.
+  SentText sent;       ///< Message in readable form.
 };
-/// Takes the messages, in order.
+/// Function that receives the messages, in order.
 using TakeDryMessage = std::function<void(const DryMessage&)>;
 
 /// Time that passes only when a driver waits for its device.
@@ -37,13 +37,14 @@ class DryClock : public ClockPort {
   double time_ = 0;
 };
 
-/// The devices of a file, each simulated, without a connection to anything real. Drivers work on them in
-/// simulated time, and every message that they send is reported. For one thread.
+/// Simulated devices in place of all devices of a file, without any real connection. Drivers use these
+/// devices in simulated time, and every message that a driver sends is reported. Only one thread may use this
+/// object.
 class DryDevices : public DeviceAccess {
  public:
   /// `axes`: number of motors. `motors`: motor positions at the start, microsteps, one per axis. `heads`:
-  /// first position of the head of each camera with devices, in their order. The equipment must outlive this
-  /// object.
+  /// initial position of the head of each camera in `equipment`, in their order. The equipment must outlive
+  /// this object.
   DryDevices(const RigEquipment& equipment, std::vector<double> motors, std::vector<HeadState> heads,
              TakeDryMessage take);
   ~DryDevices() override;
@@ -57,7 +58,7 @@ class DryDevices : public DeviceAccess {
   [[nodiscard]] bool wants_logins() const override { return false; }
   [[nodiscard]] Guard* guard() override { return nullptr; }
 
-  /// Returns what the simulated devices assume about the real ones, one sentence each.
+  /// Returns the assumptions about the real devices that the simulated devices make, one sentence each.
   [[nodiscard]] std::vector<std::string> assumptions() const;
 
  private:

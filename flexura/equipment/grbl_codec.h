@@ -17,14 +17,15 @@ namespace flexura {
 
 /// Bytes that act at once, wherever they are in the stream.
 namespace grbl {
-constexpr char ask_status = '?';      ///< Answered by a status report.
-constexpr char hold = '!';            ///< Brakes; the motion can go on later.
-constexpr char resume = '~';          ///< Goes on after a hold.
-constexpr char reset = '\x18';        ///< Restarts the firmware; motors stop without braking.
-constexpr char cancel_jog = '\x85';   ///< Brakes a jog and forgets all jogs.
-constexpr std::size_t most_axes = 8;  ///< Axes of a controller: X Y Z A B C U V.
-constexpr std::string_view axis_letters = "XYZABCUV";  ///< In the order of positions.
-constexpr std::size_t longest_line = 80;  ///< Characters of a line that Grbl 1.1 takes, with its end.
+constexpr char ask_status = '?';      ///< Requests a status report.
+constexpr char hold = '!';            ///< Feed hold: brakes. The motion can be resumed later.
+constexpr char resume = '~';          ///< Resumes the motion after a hold.
+constexpr char reset = '\x18';        ///< Restarts the firmware. The motors stop without braking.
+constexpr char cancel_jog = '\x85';   ///< Brakes the current jog and deletes all queued jogs.
+constexpr std::size_t most_axes = 8;  ///< Largest number of axes of a controller: X Y Z A B C U V.
+constexpr std::string_view axis_letters = "XYZABCUV";  ///< Letters of the axes, in the order of positions.
+constexpr std::size_t longest_line =
+    80;  ///< Largest length of a line that Grbl 1.1 accepts, in characters, including the line's end.
 }  // namespace grbl
 
 /// State of a controller.
@@ -35,13 +36,17 @@ enum class GrblState { idle, run, hold, jog, alarm, door, check, home, sleep, to
 /// Status report: `<Idle|MPos:0.000,0.000,0.000|FS:0,0>`.
 struct GrblStatus {
   GrblState state = GrblState::idle;
-  int part = -1;                       ///< Number after the state, as in Hold:1; -1 if there is none.
-  bool is_work = false;                ///< Whether the positions are those of WPos instead of MPos.
+  int part = -1;  ///< Number after the state, as in Hold:1; -1 if there is none.
+  bool is_work =
+      false;  ///< Whether the report has work positions (WPos) instead of machine positions (MPos).
   std::vector<double> positions = {};  ///< Position of each axis, mm; never empty.
-  std::vector<double> offset = {};     ///< WCO, mm, with WPos = MPos - WCO; empty if it is not reported.
-  std::optional<std::int64_t> free_blocks = {}, free_bytes = {};  ///< Bf: free places of the two buffers.
-  std::optional<double> feed = {};                                ///< F or FS, mm/min.
-  std::string pins = {};  ///< Pn: letters of the inputs that are active.
+  std::vector<double> offset =
+      {};  ///< Work coordinate offset WCO = MPos - WPos, mm; empty if it is not reported.
+  std::optional<std::int64_t>
+      free_blocks = {},
+      free_bytes = {};              ///< Bf: free blocks of the planner, and free bytes of the receive buffer.
+  std::optional<double> feed = {};  ///< Feed (F or FS), mm/min.
+  std::string pins = {};            ///< Pn: letters of the inputs that are active.
 };
 
 /// `Grbl 1.1h ['$' for help]`: the firmware has (re)started.
@@ -75,30 +80,30 @@ struct GrblUnknown {
 using GrblMessage = std::variant<GrblStatus, GrblBanner, GrblOk, GrblError, GrblAlarm, GrblSetting,
                                  GrblFeedback, GrblUnknown>;
 
-/// Returns the message of a line without its end. Never throws: a line that breaks any rule is unknown.
+/// Returns the message in a line, which has no line end. Never throws: an invalid line is a GrblUnknown.
 [[nodiscard]] GrblMessage parse_grbl(std::string_view line);
 
-/// Returns a status report without the line's end, with 3 decimals as Grbl prints.
+/// Returns the text of a status report, without a line end. Numbers have 3 decimals, as in Grbl.
 [[nodiscard]] std::string text(const GrblStatus& status);
 
-/// Returns what `error:N` means.
+/// Returns the meaning of `error:N`.
 [[nodiscard]] std::string_view grbl_error_meaning(int code);
-/// Returns what `ALARM:N` means.
+/// Returns the meaning of `ALARM:N`.
 [[nodiscard]] std::string_view grbl_alarm_meaning(int code);
 
-/// Returns the line, with its end, that moves axes to machine positions, mm, along a straight line.
-/// `letters`: the axes, one letter per position. `feed`: speed along the line, mm/min, > 0. Positions have 5
-/// decimals, without zeros at the end.
+/// Returns the command, with its line end, that moves axes to machine positions, mm, along a straight line.
+/// `letters`: the axes, one letter per position. `feed`: speed along the line, mm/min, > 0. Positions have at
+/// most 5 decimals.
 [[nodiscard]] std::string grbl_jog(std::string_view letters, std::span<const double> positions, double feed);
 
-/// Cuts a stream of bytes into lines. Keeps at most `longest` bytes; a longer line is left out.
+/// Splits a stream of bytes into lines. A line longer than `longest` bytes is discarded.
 class GrblLines {
  public:
   static constexpr std::size_t longest = 512;  ///< Bytes of a line.
 
-  /// Takes bytes; returns the lines that they complete, without ends. Empty lines are left out.
+  /// Adds bytes. Returns the lines that are now complete, without line ends. Empty lines are omitted.
   std::vector<std::string> add(std::string_view bytes);
-  /// Forgets the beginning of a line.
+  /// Discards an incomplete line.
   void clear() { begun_.clear(), is_too_long_ = false; }
 
  private:

@@ -46,40 +46,45 @@ const Table<GrblConfig>& fields_of(const GrblConfig*) {
                  {.meaning = "Largest motor position of either sign, microsteps.",
                   .range = between(1, 2097152),
                   .default_text = "2097152"})
-          .field("window", &GrblConfig::window,
-                 {.meaning = "Bytes that may be on the way to the controller unanswered.",
-                  .range = between(80, 4096)})
-          .field("lead", &GrblConfig::lead,
-                 {.meaning = "Delay at which the controller follows a stream of commands without stops.",
-                  .unit = Unit::second,
-                  .range = between(0, 1)})
+          .field(
+              "window", &GrblConfig::window,
+              {.meaning =
+                   "Largest number of bytes that the program sends before the controller has answered them.",
+               .range = between(80, 4096)})
+          .field(
+              "lead", &GrblConfig::lead,
+              {.meaning =
+                   "Delay with which the motors follow a stream of commands without stopping between them.",
+               .unit = Unit::second,
+               .range = between(0, 1)})
           .field("most_lag", &GrblConfig::most_lag,
-                 {.meaning = "If the previous motion lasts longer than this, a new command cancels it.",
+                 {.meaning =
+                      "If the rest of the previous motion lasts longer than this, a new command cancels it.",
                   .unit = Unit::second,
                   .range = between(0, 10)})
           .field(
               "answer_timeout", &GrblConfig::answer_timeout,
               {.meaning = "Longest wait for an answer.", .unit = Unit::second, .range = above_up_to(0, 10)})
           .field("connect_timeout", &GrblConfig::connect_timeout,
-                 {.meaning = "Longest wait for a controller that starts.",
+                 {.meaning = "Longest wait for a controller that is starting.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_timeout)})
           .field("stop_timeout", &GrblConfig::stop_timeout,
-                 {.meaning = "Longest time of braking.",
+                 {.meaning = "Longest duration of braking.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_timeout)})
-          .field(
-              "homing_timeout", &GrblConfig::homing_timeout,
-              {.meaning = "Longest homing.", .unit = Unit::second, .range = above_up_to(0, longest_timeout)})
-          .field(
-              "brake_time", &GrblConfig::brake_time,
-              {.meaning = "Time that an emergency stop leaves for braking before it resets the controller.",
-               .unit = Unit::second,
-               .range = between(0, 10)})
+          .field("homing_timeout", &GrblConfig::homing_timeout,
+                 {.meaning = "Longest duration of homing.",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest_timeout)})
+          .field("brake_time", &GrblConfig::brake_time,
+                 {.meaning = "In an emergency stop: time for braking, before the controller is reset.",
+                  .unit = Unit::second,
+                  .range = between(0, 10)})
           .field(
               "writes_settings", &GrblConfig::writes_settings,
-              {.meaning = "Whether settings that are wrong for a drive ($1, $10, $13) are corrected in the "
-                          "controller's memory."})
+              {.meaning =
+                   "Whether the program corrects wrong settings ($1, $10, $13) in the controller's memory."})
           .check(check_grbl);
   return table;
 }

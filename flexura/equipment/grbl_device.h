@@ -18,17 +18,18 @@ namespace flexura {
 
 /// A simulated motion controller.
 struct GrblDeviceConfig {
-  std::size_t axes = 3;     ///< 1 to 8; Grbl 1.1 has 3.
-  bool is_grblhal = false;  ///< Answers as grblHAL, with larger buffers, instead of as Grbl 1.1h.
+  std::size_t axes = 3;  ///< Number of axes, 1 to 8; Grbl 1.1 has 3.
+  bool is_grblhal =
+      false;  ///< Whether the device simulates grblHAL, which has larger buffers, instead of Grbl 1.1h.
   std::map<int, double> settings =
       {};  ///< Settings that differ from the defaults, by number ($100 and so on).
-  /// Place of the limit switches at both ends of each axis, microsteps of the motor; empty: no switches.
+  /// Positions of the limit switches at both ends of each axis, microsteps of the motor; empty: no switches.
   std::vector<double> low = {}, high = {};
   double boot_time = 0;    ///< Time from restart() to the banner, s.
-  double overrun = 0.002;  ///< A motor that loses its pulses at full speed turns on for this time, s.
+  double overrun = 0.002;  ///< Time for which a motor continues to turn if its pulses stop at full speed, s.
 };
 
-/// The far side of GrblDrive: a stepper controller with its motors, as Grbl 1.1 and grblHAL behave.
+/// Simulated counterpart of GrblDrive: a stepper controller with Grbl 1.1 or grblHAL, and its motors.
 ///
 /// Supported:
 /// - the `$` commands except `$SD` files
@@ -37,26 +38,28 @@ struct GrblDeviceConfig {
 /// - soft and hard limits
 /// - homing of all axes at once
 ///
-/// Arcs and probing are refused as error:20. Other realtime bytes are ignored.
+/// The device answers arcs and probing with error:20, and ignores other realtime bytes.
 class GrblDevice : public ServedDevice {
  public:
-  /// Throws std::invalid_argument if a number of values differs from that of the axes.
+  /// Throws std::invalid_argument if a list does not have one value per axis.
   explicit GrblDevice(GrblDeviceConfig config = {});
 
   std::vector<std::string> receive(std::string_view bytes, double now) override;
   std::vector<std::string> advance(double now) override;
 
-  /// Returns the position of each motor at time `now`, s, >= that of previous calls: whole microsteps. It
-  /// differs from the position that the controller reports after lost steps and after homing.
+  /// Returns the true position of each motor at time `now`, s, in whole microsteps. `now` must not be before
+  /// the time of the previous call. After lost steps or homing, the controller reports other positions.
   std::vector<double> positions(double now);
 
-  /// Restarts the controller as a power cycle or the DTR line does: the position counts from 0 again.
+  /// Restarts the controller as a power cycle or the DTR line does. The positions that the controller reports
+  /// restart at 0.
   void restart(double now);
-  /// Raises an alarm. The motors stop without braking, and turn on a little; after 2 they do not.
+  /// Raises an alarm. The motors stop without braking, and overrun a little. With alarm 2, the motors do not
+  /// overrun.
   void raise_alarm(int code, double now);
-  /// Turns a motor by hand, microsteps, without the controller's knowledge.
+  /// Turns a motor by a number of microsteps, without the controller's knowledge.
   void slip(std::size_t axis, double microsteps) { slips_.at(axis) += microsteps; }
-  /// While true, motions are answered with ok, but not executed.
+  /// While true, the controller answers motions with ok but does not execute them.
   void set_ignores_motions(bool ignores) { ignores_motions_ = ignores; }
   /// Returns the number of bytes that did not fit into the receive buffer.
   [[nodiscard]] std::size_t lost_bytes() const { return lost_bytes_; }

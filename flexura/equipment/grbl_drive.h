@@ -19,45 +19,47 @@
 
 namespace flexura {
 
-/// What a controller says about itself.
+/// Properties of a controller, as it reports them.
 struct GrblIdentity {
-  std::string firmware = {};               ///< Version that `$I` reports, for example "1.1h.20190825"; or "".
+  std::string firmware =
+      {};  ///< Version that `$I` reports, for example "1.1h.20190825"; "" if there is none.
   std::vector<double> rates = {};          ///< Highest speed of each of the drive's axes, microsteps/s.
-  std::vector<double> accelerations = {};  ///< microsteps/s^2
+  std::vector<double> accelerations = {};  ///< Acceleration of each axis, microsteps/s^2.
   std::vector<double> travel = {};         ///< Length of travel of each axis, microsteps ($130 and so on).
   bool has_soft_limits = false;            ///< Whether targets outside the travel are clamped ($20).
   bool has_homing = false;                 ///< Whether the controller can home ($22).
 };
 
-/// Stepper motors behind a controller with Grbl 1.1 or grblHAL (docs/equipment/grbl.md).
+/// Stepper motors that are driven by a controller with Grbl 1.1 or grblHAL (docs/equipment/grbl.md).
 ///
-/// Targets and readings are motor positions, microsteps. The controller counts them from an unknown zero, so
-/// home() or set_positions() comes first. After an alarm or a restart of the controller, the position is lost
-/// and this drive refuses to move and to read until one of them is called again.
+/// Targets and readings are motor positions, microsteps. The zero of the controller's positions is unknown,
+/// so home() or set_positions() must be called first. An alarm or a restart of the controller makes the
+/// positions unknown again. Then this drive refuses to move and to read until one of these functions is
+/// called.
 ///
-/// Functions may be called from several threads. halt() acts at once, even while another thread's command or
-/// homing waits, and ends that wait.
+/// Functions may be called from several threads. halt() acts immediately, even while a command or homing of
+/// another thread waits, and ends this wait.
 class GrblDrive : public DrivePort {
  public:
-  /// `clock` gives the times of readings and timeouts, and must outlive this object. Throws
-  /// std::invalid_argument for a config that its table of fields refuses, except for its link.
+  /// `clock` determines the times of readings and timeouts, and must outlive this object. Throws
+  /// std::invalid_argument for a configuration that would be invalid in a file. The address of the link is
+  /// not checked.
   GrblDrive(std::unique_ptr<Link> link, const ClockPort& clock, GrblConfig config);
 
-  /// Resets the controller, which stops it if it moves, and reads its settings. Fails if it does not answer,
-  /// or if a setting is wrong for a drive. The position is unknown afterwards.
+  /// Resets the controller, which also stops its motors, and reads its settings. Fails if the controller does
+  /// not answer, or if a setting is wrong (docs/equipment/grbl.md). Afterwards the positions are unknown.
   [[nodiscard]] CommandOutcome connect();
-  /// Moves all axes to their limit switches, and declares that this is the place of these positions,
-  /// microsteps.
+  /// Moves all axes to their limit switches. `positions`: motor positions at the switches, microsteps.
   [[nodiscard]] CommandOutcome home(std::span<const double> positions);
-  /// Declares that the motors, at rest, are at these positions, microsteps.
+  /// Sets the positions of the motors, which must be at rest, microsteps.
   [[nodiscard]] CommandOutcome set_positions(std::span<const double> positions);
-  /// Ends an alarm or a hold. The position stays lost if the alarm has lost it.
+  /// Ends an alarm or a hold. If the alarm made the positions unknown, they remain unknown.
   [[nodiscard]] CommandOutcome unlock();
   /// Returns true if the position is known.
   [[nodiscard]] bool knows_position() const;
-  /// Returns what connect() has learned of the controller.
+  /// Returns the properties that connect() has read from the controller.
   [[nodiscard]] GrblIdentity identity() const;
-  /// Asks the connected controller for its status, whether the position is known or not.
+  /// Asks the connected controller for its status. The positions need not be known.
   [[nodiscard]] Outcome<GrblStatus> status();
   /// Returns the link, for Guard::protect() with grbl_stop().
   [[nodiscard]] const Link& link() const { return *link_; }

@@ -9,21 +9,21 @@ namespace flexura {
 /// Limits of a simulated controller's axes.
 struct GrblLimits {
   std::vector<double> rates;          ///< Highest speed of each axis, mm/s.
-  std::vector<double> accelerations;  ///< mm/s^2
-  double junction_deviation = 0.01;   ///< Setting $11, mm: how fast a corner is passed.
+  std::vector<double> accelerations;  ///< Largest acceleration of each axis, mm/s^2.
+  double junction_deviation = 0.01;   ///< Setting $11, mm; larger values allow higher speeds at corners.
 };
 
-/// Motion of a simulated controller: straight blocks in a queue, with limited acceleration, and without a
-/// stop between blocks where the corner allows it. This is the planner of Grbl (gnea/grbl, planner.c; the
-/// corner's speed is described by S. K. Jeon, "Improving Grbl: Cornering Algorithm", 2011). As there, the
-/// next 0.06 s of pulses are prepared in advance, and neither a new block nor braking changes them
-/// (stepper.c, 6 segments at 100 a second). Time advances in ticks.
+/// Motion of a simulated controller: a queue of straight lines (blocks), with limited acceleration. The axes
+/// do not stop between two blocks if the corner allows a speed. This is the planner of Grbl (gnea/grbl,
+/// planner.c). The speed at corners is described by S. K. Jeon, "Improving Grbl: Cornering Algorithm", 2011.
+/// As in Grbl, the pulses of the next 0.06 s are prepared in advance, and neither a new block nor braking
+/// changes them (stepper.c: 6 segments, 100 per second). Time advances in ticks.
 class GrblMotion {
  public:
-  static constexpr double tick = 1e-3;              ///< s
-  static constexpr std::size_t most_prepared = 60;  ///< Ticks.
+  static constexpr double tick = 1e-3;              ///< Length of a tick, s.
+  static constexpr std::size_t most_prepared = 60;  ///< Largest number of ticks prepared in advance.
 
-  /// All axes start at 0. `most_blocks`: places of the queue.
+  /// All axes start at 0. `most_blocks`: largest number of blocks in the queue.
   GrblMotion(std::size_t axes, std::size_t most_blocks)
       : most_blocks_(most_blocks),
         position_(axes, 0),
@@ -36,20 +36,20 @@ class GrblMotion {
   void add(const std::vector<double>& target, double feed, const GrblLimits& limits);
   /// Moves for one tick.
   void step();
-  /// Brakes, and stays at rest.
+  /// Brakes. The axes then remain at rest.
   void brake() { is_braking_ = true; }
-  /// Goes on after brake().
+  /// Resumes the motion after brake().
   void resume() { is_braking_ = false; }
-  /// Stops at once, forgets the queue and goes to `position`, mm, without motion.
+  /// Stops the motors immediately, deletes the queue and sets the position to `position`, mm.
   void reset(const std::vector<double>& position);
-  /// Stops at once and forgets the queue.
+  /// Stops the motors immediately and deletes the queue.
   void reset() { reset(std::vector<double>(position_)); }
 
   [[nodiscard]] bool is_full() const { return blocks_.size() >= most_blocks_; }
   [[nodiscard]] std::size_t free_blocks() const { return most_blocks_ - blocks_.size(); }
   /// Returns true if nothing moves and nothing is queued.
   [[nodiscard]] bool is_idle() const { return blocks_.empty() && prepared_.empty(); }
-  /// Returns true if nothing moves: also after brake().
+  /// Returns true if nothing moves, even if blocks are queued after brake().
   [[nodiscard]] bool is_resting() const {
     return prepared_.empty() && (blocks_.empty() || (is_braking_ && planned_speed_ == 0));
   }
@@ -57,7 +57,7 @@ class GrblMotion {
   [[nodiscard]] double speed() const { return speed_; }
   /// Returns the position, mm.
   [[nodiscard]] const std::vector<double>& position() const { return position_; }
-  /// Returns the end of the queue, mm.
+  /// Returns the target position of the last block in the queue, mm.
   [[nodiscard]] const std::vector<double>& last() const { return last_; }
   /// Returns the direction of the current motion, a unit vector, or zeros.
   [[nodiscard]] const std::vector<double>& direction() const { return direction_; }

@@ -9,39 +9,41 @@
 
 namespace flexura {
 
-/// What a controller's axes can do, and how finely they are counted.
+/// Resolution and limits of a controller's axes.
 struct GrblAxes {
   std::vector<double> per_mm;         ///< Steps per mm ($100 and following).
-  std::vector<double> rates;          ///< mm/s ($110)
-  std::vector<double> accelerations;  ///< mm/s^2 ($120)
+  std::vector<double> rates;          ///< Highest speeds, mm/s ($110).
+  std::vector<double> accelerations;  ///< Largest accelerations, mm/s^2 ($120).
 };
 
-/// The way that a controller has been commanded and has not yet reported to have passed: straight legs
-/// between positions in steps. Estimates how long it will be under way, and says whether a report can be
-/// true.
+/// Commanded path of a controller: straight lines between positions, in steps. The path contains only the
+/// part that the controller has not yet reported as completed. Estimates the remaining duration, and checks
+/// whether a reported position is plausible.
 class GrblPath {
  public:
   explicit GrblPath(GrblAxes axes) : axes_(std::move(axes)), end_(axes_.per_mm.size(), 0) {}
 
-  /// The controller rests at a position, steps, at time `now`, s.
+  /// Sets the path to a position, steps, at which the controller is at rest at time `now`, s.
   void rest(std::vector<std::int64_t> position, double now);
-  /// The controller was stopped at a position, steps, at time `now`, s: a stream of commands has ended.
+  /// Sets the path to a position, steps, at which the controller was stopped at time `now`, s. This ends a
+  /// stream of commands.
   void stop(std::vector<std::int64_t> position, double now);
   /// Returns the last target, steps.
   [[nodiscard]] const std::vector<std::int64_t>& end() const { return end_; }
-  /// Returns the speed, mm/min, of a motion to `target` that lasts until `duration` s after `now`. If the
-  /// controller still moves, or has stopped less than `lead` s ago, it lasts until `lead` s later: a stream
-  /// of commands is followed with this delay. The motion is limited by its axes.
+  /// Returns the speed, mm/min, of a motion to `target`, within the limits of the axes. The motion ends at
+  /// now + duration, s. If the controller still moves, or has stopped less than `lead` s ago, the motion ends
+  /// `lead` s later. So the controller follows a stream of commands with the delay `lead`.
   [[nodiscard]] double feed_to(std::span<const std::int64_t> target, double duration, double lead,
                                double now) const;
   /// Adds a motion that the controller has accepted, with a feed in mm/min.
   void add(std::vector<std::int64_t> target, double feed, double now);
-  /// Returns the estimated time until the last target is reached, without the time of braking, s; 0 at rest.
+  /// Returns the estimated time until the last target is reached, s; 0 at rest. The additional time for
+  /// braking is not included.
   [[nodiscard]] double lag(double now) const;
-  /// Returns true if a controller that moves may be at this position, steps, at time `now`. The position must
-  /// be within `tolerance` steps of the way, not behind an earlier report, and not further than it can go.
+  /// Returns true if a moving controller can be at this position, steps, at time `now`, s. The position must
+  /// be within `tolerance` steps of the path, not behind an earlier report, and reachable by this time.
   [[nodiscard]] bool can_be_at(std::span<const std::int64_t> position, double tolerance, double now) const;
-  /// Takes a position that can be, as reported at time `now` or later.
+  /// Stores a plausible position, steps, reported at time `now`, s, or later.
   void report(std::span<const std::int64_t> position, double now);
 
  private:

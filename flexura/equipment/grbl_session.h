@@ -21,59 +21,62 @@ namespace flexura {
 
 /// Answer to a line.
 struct GrblAnswer {
-  int error = 0;                  ///< N of error:N, 0 for ok.
-  std::vector<GrblMessage> said;  ///< Settings and feedback that arrived before it.
+  int error = 0;                  ///< Number N of error:N; 0 for ok.
+  std::vector<GrblMessage> said;  ///< Settings and feedback that arrived before the answer.
 };
 
-/// Conversation with a controller: lines and their answers, in order, with at most a window of bytes on the
-/// way. All waits end by a timeout. One thread at a time, except interrupt().
+/// Communication with a controller: lines and their answers, in order. The number of bytes that are not yet
+/// answered is limited (window). All waits have a timeout. Only one thread may use it at a time, except for
+/// interrupt().
 class GrblSession {
  public:
-  /// `window`: most bytes on the way that are not answered. `answer_timeout`: s. The link and the clock must
-  /// outlive this object.
+  /// `window`: largest number of bytes that are sent but not yet answered. `answer_timeout`: longest wait for
+  /// an answer, s. Link and clock must outlive this object.
   GrblSession(Link& link, const ClockPort& clock, std::size_t window, double answer_timeout)
       : link_(link), clock_(clock), window_(window), answer_timeout_(answer_timeout) {}
 
-  /// Sends a line, with its end, and waits for its answer for at most `timeout` s.
+  /// Sends a line, which includes its line end, and waits for the answer for at most `timeout` s.
   Outcome<GrblAnswer> ask(const std::string& line, double timeout);
   Outcome<GrblAnswer> ask(const std::string& line) { return ask(line, answer_timeout_); }
-  /// Sends lines, each as soon as it fits into the window, and waits for all answers, each for at most the
-  /// answer timeout. Returns the error of the first refused line, or 0.
+  /// Sends lines, each as soon as it fits into the window. Waits for all answers, for each at most the answer
+  /// timeout. Returns the error code of the first refused line, or 0.
   Outcome<int> stream(std::span<const std::string> lines);
-  /// Asks for a status report that the controller makes after this call. If it is urgent, lines and answers
-  /// are not brought together first, so after a loss the report may be an earlier one.
+  /// Requests a new status report. If answers were lost before, this function first calls resynchronize().
+  /// With `is_urgent` it does not, so the result may be an older report.
   Outcome<GrblStatus> status(bool is_urgent = false);
-  /// Listens for `duration` s.
+  /// Processes messages of the controller for `duration` s.
   CommandOutcome listen(double duration);
-  /// Returns true if answers may not belong to their lines until resynchronize().
+  /// Returns true if answers may have been lost, so that the next answers may belong to other lines.
+  /// resynchronize() repairs this.
   [[nodiscard]] bool is_out_of_step() const { return is_out_of_step_; }
-  /// Sends bytes that act at once. Any thread.
+  /// Sends a realtime byte. May be called from any thread.
   CommandOutcome act(char byte);
   /// Resets the controller and waits for its banner for at most `timeout` s.
   CommandOutcome reset(double timeout);
-  /// Brings lines and answers together again after a loss: waits until the controller answers a question
-  /// whose answer cannot be confused.
+  /// Finds out again which answer belongs to which line, after a loss. Waits for the answer to a request
+  /// whose answer is unmistakable.
   CommandOutcome resynchronize();
   /// Reads what has arrived, without waiting.
   CommandOutcome drain();
 
-  /// Ends the waits of the call in progress, and sends a byte. No line is sent afterwards until begin() is
-  /// called. Any thread.
+  /// Sends a realtime byte, and ends the waits of the call in progress. No line is sent until begin() is
+  /// called. May be called from any thread.
   CommandOutcome interrupt(char byte);
   /// Returns the number of calls of interrupt().
   [[nodiscard]] unsigned interrupts() const { return interrupts_; }
-  /// Allows sending after interrupt(), unless the number of its calls is no longer `known`.
+  /// Allows sending again after interrupt(), unless interrupt() has been called more than `known` times.
   void begin(unsigned known) { begun_ = known, is_stopping_ = false; }
-  /// Until begin(), interrupt() sends its byte but does not end waits: they already are those of a stop.
+  /// From now until begin(), interrupt() sends its byte but does not end waits, because these waits belong to
+  /// a stop.
   void begin_stop() { is_stopping_ = true; }
   /// Returns true if interrupt() was called since begin().
   [[nodiscard]] bool is_interrupted() const { return !is_stopping_ && interrupts_ != begun_; }
 
-  /// Returns and forgets the last ALARM:N.
+  /// Returns the number N of the last ALARM:N, and clears it.
   std::optional<int> take_alarm() { return std::exchange(alarm_, std::nullopt); }
-  /// Returns and forgets whether the controller has restarted unasked.
+  /// Returns whether the controller has restarted unexpectedly, and clears this flag.
   bool take_restart() { return std::exchange(has_restarted_, false); }
-  /// Returns the bytes on the way.
+  /// Returns the number of bytes that are sent but not yet answered.
   [[nodiscard]] std::size_t unanswered() const;
   /// Makes the window smaller.
   void limit_window(std::size_t bytes) { window_ = std::min(window_, bytes); }

@@ -11,19 +11,19 @@
 
 namespace flexura {
 
-/// Transport of an RTSP stream's pictures. tcp: within the RTSP connection; nothing is lost, but a slow
-/// network delays. udp: in packets of their own, which may be lost.
+/// Transport of the pictures of an RTSP stream. tcp: within the RTSP connection; no packets are lost, but a
+/// slow network causes delays. udp: in separate packets, which may be lost.
 enum class StreamTransport { tcp, udp };
 
-/// Source of a camera's pictures: a pipeline of GStreamer.
+/// Source of a camera's pictures: a GStreamer pipeline.
 struct GStreamerConfig {
-  /// An address "rtsp://..." or "rtsps://...", or the text of a pipeline of gst-launch-1.0 whose last element
-  /// gives raw pictures.
+  /// An address "rtsp://..." or "rtsps://...", or the text of a pipeline as for gst-launch-1.0, whose last
+  /// element outputs uncompressed pictures.
   std::string source;
   StreamTransport transport = StreamTransport::tcp;
-  double buffer = 0.05;      ///< Time for which an RTSP stream waits for late packets, s.
-  double silence = 5;        ///< Time without a frame after which the connection is made again, s.
-  double longest_pause = 5;  ///< Longest pause before a new connection, s.
+  double buffer = 0.05;      ///< Time for which the receiver of an RTSP stream waits for late packets, s.
+  double silence = 5;        ///< Time without a frame after which the program reconnects, s.
+  double longest_pause = 5;  ///< Longest pause between two attempts to connect, s.
 };
 
 const std::vector<std::string>& names_of(const StreamTransport*);
@@ -32,19 +32,19 @@ const Table<GStreamerConfig>& fields_of(const GStreamerConfig*);
 /// Returns whether this program was built with GStreamer.
 [[nodiscard]] bool has_gstreamer();
 
-/// Returns the whole pipeline for a camera, as gst-launch-1.0 would take it.
+/// Returns the complete pipeline for a camera, as text for gst-launch-1.0.
 [[nodiscard]] std::string gstreamer_pipeline(const GStreamerConfig& config, const SensorConfig& sensor);
 
 /// Starts a camera on a pipeline. The frames have the size and the channels of `camera.sensor`, with 8 bits
-/// per value; a stream of another size is a fault. The connection is made, and made again, in the background.
+/// per value; a stream of another image size is a fault. A thread connects, and reconnects after a loss.
 ///
-/// Frame::time is the stream's time stamp. That of an RTSP stream is on the camera's clock. Over TCP it is as
-/// sent. Over UDP it is on this clock from the camera's first report of its time (RTCP sender report) on, and
-/// before on this machine's monotonic clock. Use ClockedCamera for times on the rig's clock. Frame::exposure
-/// is that of `camera.sensor`.
+/// Frame::time is the stream's time stamp. For an RTSP stream over TCP it is on the camera's clock. For an
+/// RTSP stream over UDP it is on the camera's clock after the camera's first RTCP sender report. Before this
+/// report it is on this computer's monotonic clock. Use ClockedCamera for times on the rig's clock.
+/// Frame::exposure has the value in `camera.sensor`.
 ///
-/// `clock` must outlive the camera. Refuses a sensor with more than 8 bits, and every camera if the program
-/// was built without GStreamer.
+/// `clock` must outlive the camera. Returns a fault for a sensor with more than 8 bits, and for every camera
+/// if the program was built without GStreamer.
 [[nodiscard]] Outcome<std::unique_ptr<CountedCamera>> open_gstreamer_camera(const GStreamerConfig& config,
                                                                             const CameraConfig& camera,
                                                                             const ClockPort& clock);

@@ -41,21 +41,21 @@ const Table<GStreamerConfig>& fields_of(const GStreamerConfig*) {
       Table<GStreamerConfig>("gstreamer", "Pictures from a network camera, or from a pipeline of GStreamer.")
           .field("source", &GStreamerConfig::source,
                  {.meaning = "Address `rtsp://...` of a network camera, or a pipeline as for "
-                             "`gst-launch-1.0` whose last element gives raw pictures.",
+                             "`gst-launch-1.0` whose last element outputs uncompressed pictures.",
                   .required = true})
           .field("transport", &GStreamerConfig::transport,
-                 {.meaning = "Transport of an RTSP stream. `tcp`: nothing is lost, but a slow network "
-                             "delays. `udp`: packets may be lost."})
+                 {.meaning = "Transport of an RTSP stream. `tcp`: no packets are lost, but a slow network "
+                             "causes delays. `udp`: packets may be lost."})
           .field("buffer", &GStreamerConfig::buffer,
-                 {.meaning = "Time for which an RTSP stream waits for late packets.",
+                 {.meaning = "Time for which the receiver of an RTSP stream waits for late packets.",
                   .unit = Unit::second,
                   .range = between(0, 10)})
           .field("silence", &GStreamerConfig::silence,
-                 {.meaning = "Time without a frame after which the connection is made again.",
+                 {.meaning = "Time without a frame after which the program reconnects.",
                   .unit = Unit::second,
                   .range = between(0.1, 600)})
           .field("longest_pause", &GStreamerConfig::longest_pause,
-                 {.meaning = "Longest pause before a new connection.",
+                 {.meaning = "Longest pause between two attempts to connect.",
                   .unit = Unit::second,
                   .range = between(0.1, 600)});
   return table;

@@ -88,12 +88,14 @@ Guard::Guard(double period) : period_(period) {
     throw std::invalid_argument("the period of a guard must be finite and above 0");
   std::array<int, 2> ends{-1, -1};
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    throw std::runtime_error(fmt::format("no guard for the equipment: {}", std::strerror(errno)));
+    throw std::runtime_error(
+        fmt::format("the guard of the equipment cannot be started: {}", std::strerror(errno)));
   socket_ = Descriptor(ends[0]);
   const Descriptor other(ends[1]);
   child_ = ::fork();
   if (child_ < 0)
-    throw std::runtime_error(fmt::format("no guard for the equipment: {}", std::strerror(errno)));
+    throw std::runtime_error(
+        fmt::format("the guard of the equipment cannot be started: {}", std::strerror(errno)));
   if (child_ == 0) be_guard(other.get(), period);
 }
 
@@ -108,7 +110,7 @@ Guard::~Guard() {
 
 void Guard::send_new(const GuardMessage& message, int link) {
   if (!send_message(socket_.get(), message, link))
-    throw std::runtime_error("the guard of the equipment does not take messages");
+    throw std::runtime_error("the guard of the equipment does not accept messages");
   for (char answer = 0; answer != static_cast<char>(GuardAnswer::ready);) {
     pollfd one{socket_.get(), POLLIN, 0};
     if (::poll(&one, 1, 5000) <= 0 || ::recv(socket_.get(), &answer, 1, 0) != 1)

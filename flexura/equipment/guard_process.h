@@ -12,25 +12,25 @@
 // What the process that protects devices (Guard) is sent, and what it does.
 namespace flexura {
 
-/// A message to the guarding process. It may carry a descriptor.
+/// A message to the guarding process. Some messages carry a file descriptor.
 struct GuardMessage {
   /// Kinds of messages.
   enum class Kind : std::uint8_t {
-    protect,  ///< Protect a device; carries its link, or has its address.
-    renew,    ///< Replace the messages of device number `device`.
-    moving,   ///< The next beat is due within a period.
-    resting,  ///< No beat is due.
+    protect,  ///< Protect a device. The message carries the descriptor of its link, or contains its address.
+    renew,    ///< Replace the stop messages of device number `device`.
+    moving,   ///< The next beat must follow within a period.
+    resting,  ///< No further beat is needed.
     stop,     ///< Stop all devices now.
-    end,      ///< End without a stop.
+    end,      ///< End without stopping the devices.
   };
   Kind kind = Kind::resting;
-  std::uint8_t first = 0;  ///< Number of messages that are sent at once.
-  std::uint8_t count = 0;  ///< Number of all messages.
-  double delay = 0;        ///< From the first messages to the others, s.
+  std::uint8_t first = 0;  ///< Number of stop messages that are sent immediately.
+  std::uint8_t count = 0;  ///< Number of all stop messages.
+  double delay = 0;        ///< Delay from the first messages to the others, s.
   std::array<std::uint16_t, Guard::most_messages> sizes{};
-  std::array<char, Guard::messages_size> text{};  ///< One message after the other.
+  std::array<char, Guard::messages_size> text{};  ///< Texts of all messages, one after the other.
   std::uint8_t device = 0;
-  socklen_t address_size = 0;  ///< 0: the device has a link.
+  socklen_t address_size = 0;  ///< Size of `address`; 0: the message carries a link.
   sockaddr_storage address{};
 };
 
@@ -41,33 +41,34 @@ struct GuardMessage {
 /// Answers of the guarding process.
 enum class GuardAnswer : char { ready = 'r', stopped = 's' };
 
-/// Decides when which stop messages are sent. Has neither clock nor sockets, so that it also runs in
-/// simulated time. Allocates no memory.
+/// Decides which stop messages are sent at which time. A GuardWatch has neither a clock nor sockets, so that
+/// tests can run it in simulated time. Allocates no memory.
 class GuardWatch {
  public:
-  /// `period`: see Guard, s.
+  /// `period`: longest time between beats while the arm moves, s.
   explicit GuardWatch(double period) noexcept : period_(period) {}
   virtual ~GuardWatch() = default;
   GuardWatch(const GuardWatch&) = delete;
   GuardWatch& operator=(const GuardWatch&) = delete;
 
-  /// Takes a message of the program at time `now`, s. `link`: the link that it carries, or -1.
+  /// Processes a message of the program at time `now`, s. `link`: descriptor of the link that the message
+  /// carries, or -1.
   void heed(const GuardMessage& message, int link, double now) noexcept;
-  /// Stops all devices, because the program has ended without a message.
+  /// Stops all devices at time `now`, s, because the program has ended without a message.
   void lose_program(double now) noexcept;
-  /// Sends what is due at time `now`, s. Returns whether it has stopped the devices because the program is
-  /// silent.
+  /// Sends the messages that are due at time `now`, s. Returns whether this call has stopped the devices,
+  /// because a beat is missing.
   bool advance(double now) noexcept;
-  /// Returns the time at which something is due unless the program says more, s; HUGE_VAL: never.
+  /// Returns the time at which advance() must be called if no message arrives before, s; HUGE_VAL: never.
   [[nodiscard]] double due() const noexcept;
   /// Returns whether the program has ended.
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
 
  protected:
-  /// Sends bytes over a link at once.
+  /// Sends bytes over a link immediately.
   virtual void send(int link, const char* bytes, std::size_t size) noexcept = 0;
-  /// Begins to send the first messages of a device at an address, over a new connection. `device`: its
-  /// number.
+  /// Starts to send the first stop messages over a new connection to a device with an address. `device`:
+  /// number of the device.
   virtual void send_to_address(std::size_t device, const GuardMessage& stop) noexcept = 0;
 
  private:
@@ -87,13 +88,14 @@ class GuardWatch {
   double beat_ = 0, stopped_ = 0;
 };
 
-/// Sends `size` bytes over a link at once. Discards what a serial line has not sent yet, because a stop must
-/// not wait behind commands. Tries for a short time only. Async-signal-safe.
+/// Sends `size` bytes over a link immediately. First discards bytes that a serial line has not sent yet,
+/// because a stop must not wait for commands. Gives up after a short time. Async-signal-safe.
 void send_stop(int descriptor, const char* bytes, std::size_t size) noexcept;
 
-/// Protects devices until `socket` says that it need not. Allocates no memory and uses only async-signal-safe
-/// functions, because it runs in a copy of a process that may have had several threads. Returns after a stop
-/// of all devices if the other side of `socket` is gone.
+/// Main loop of the guarding process. Protects devices until the program sends the message `end` over
+/// `socket`. If the other side of `socket` is closed, stops all devices and returns. Allocates no memory and
+/// uses only async-signal-safe functions, because it runs after fork() of a process that may have several
+/// threads.
 void guard_devices(int socket, double period) noexcept;
 
 }  // namespace flexura

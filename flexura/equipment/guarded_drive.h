@@ -10,9 +10,9 @@
 
 namespace flexura {
 
-/// A drive whose watchdog stops all devices if this program is silent for a period while the drive moves.
-/// Whatever waits must call beat(). The drive's clock may have another origin than the rig's. All functions
-/// may be called from several threads if those of the drive may.
+/// A drive with a watchdog. The watchdog stops all devices if this object sends no beat for a period while
+/// the drive moves. Code that waits must call beat(). The drive's clock may have another origin than the
+/// rig's clock. All functions may be called from several threads if the functions of the drive may.
 class GuardedDrive : public DrivePort {
  public:
   /// Drive and watchdog must outlive this object. `keep_alive`, if any, is called with every beat.
@@ -22,12 +22,13 @@ class GuardedDrive : public DrivePort {
 
   [[nodiscard]] DriveQuantity quantity() const override { return drive_.quantity(); }
   [[nodiscard]] std::size_t axes() const override { return drive_.axes(); }
-  /// Refuses the command if the guard has stopped the devices. Then the next command is passed on again.
+  /// Refuses the command if the watchdog has stopped the devices since the last command. The next command is
+  /// accepted again.
   CommandOutcome command(std::span<const double> targets, double duration) override;
   CommandOutcome halt() override;
   Outcome<DriveReading> read() override;
 
-  /// Reports to the guard that this program works.
+  /// Sends the watchdog a sign of life.
   void beat();
 
  private:

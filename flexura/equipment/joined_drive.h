@@ -9,14 +9,14 @@
 
 namespace flexura {
 
-/// Several motion controllers that together form one drive. Its axes are those of the first, then those of
-/// the second, and so on.
+/// Several drives, the parts, that together form one drive. The axes of the first part come first, then those
+/// of the second part, and so on.
 class JoinedDrive : public DrivePort {
  public:
-  /// How the parts are called.
+  /// Order in which the functions of the parts are called.
   enum class Calls {
-    one_by_one,  ///< In order, from the thread of the caller.
-    at_once      ///< Each from a thread of its own, so that slow links do not add up.
+    one_by_one,  ///< One after the other, in the thread of the caller.
+    at_once      ///< At the same time, each in a separate thread, so that delays of slow links do not add up.
   };
 
   /// The parts must outlive this object. Throws std::invalid_argument if there are none or their quantities
@@ -25,13 +25,13 @@ class JoinedDrive : public DrivePort {
 
   [[nodiscard]] DriveQuantity quantity() const override { return parts_.front()->quantity(); }
   [[nodiscard]] std::size_t axes() const override { return axes_; }
-  /// Commands every part with its share of the targets and the same duration. If one fails, halts all and
+  /// Commands each part to its own targets, with the same duration. If a part fails, halts all parts and
   /// returns the first fault.
   CommandOutcome command(std::span<const double> targets, double duration) override;
-  /// Halts every part, even if one fails. Returns the first fault.
+  /// Halts every part, even if a part fails. Returns the first fault.
   CommandOutcome halt() override;
-  /// Returns the readings of all parts. The time is the middle between the earliest and the latest. Positions
-  /// behind the backlash are there if every part has them.
+  /// Returns the readings of all parts. The time is the middle between the earliest and the latest reading.
+  /// The reading has positions behind the backlash only if every part reports them.
   Outcome<DriveReading> read() override;
 
  private:

@@ -9,25 +9,26 @@
 
 namespace flexura {
 
-/// Faults of a link. Each is drawn for each message of either direction on its own.
+/// Probabilities of the faults of a link. Each fault is drawn independently for each message in either
+/// direction.
 struct LinkFaults {
   double lose = 0;       ///< Probability that a message is lost.
-  double repeat = 0;     ///< Probability that it arrives twice.
-  double cut = 0;        ///< Probability that its end is lost.
-  double damage = 0;     ///< Probability that one of its bytes is changed.
-  double swap = 0;       ///< Probability that it arrives after the next one.
-  double delay = 0;      ///< Probability that it arrives late.
+  double repeat = 0;     ///< Probability that a message arrives twice.
+  double cut = 0;        ///< Probability that the end of a message is lost.
+  double damage = 0;     ///< Probability that one byte of a message is changed.
+  double swap = 0;       ///< Probability that a message arrives after the next one.
+  double delay = 0;      ///< Probability that a message is delayed.
   double most_late = 0;  ///< Longest delay, s.
 };
 
-/// Carries messages one way, with faults. The same seed gives the same faults.
+/// Transmits messages in one direction, with random faults. Equal seeds cause equal faults.
 class FaultyCarrier {
  public:
   explicit FaultyCarrier(std::uint64_t seed) : random_(seed) {}
 
-  /// Takes a message that is sent at time `now`, s.
+  /// Accepts a message that is sent at time `now`, s.
   void put(std::string message, const LinkFaults& faults, double now);
-  /// Returns the messages that have arrived by time `now`, s, in order, and forgets them.
+  /// Removes and returns the messages that have arrived by time `now`, s, in order.
   std::vector<std::string> take(double now);
 
  private:

@@ -13,9 +13,9 @@ namespace flexura {
 /// Token of the camera's only media profile.
 inline constexpr std::string_view onvif_fixed_profile = "profile_1";
 
-/// Returns a whole SOAP message with a fault; `code`: of ONVIF, such as "NotAuthorized".
+/// Returns a complete SOAP message with a fault. `code`: ONVIF's code, such as "NotAuthorized".
 [[nodiscard]] std::string soap_fault(std::string_view code, std::string_view reason);
-/// Returns the answer to a request that returns nothing.
+/// Returns an answer without content, for requests such as a move.
 [[nodiscard]] std::string onvif_empty_answer(std::string_view request);
 /// `time`: s since 1970.
 [[nodiscard]] std::string onvif_clock_answer(double time);
@@ -27,9 +27,9 @@ inline constexpr std::string_view onvif_fixed_profile = "profile_1";
 /// `space`: URI of the space of pan and tilt. `time`: s since 1970.
 [[nodiscard]] std::string onvif_status_answer(const OnvifPlace& place, std::string_view space,
                                               const std::optional<bool>& is_moving, double time);
-/// Returns answers that are always the same and need no login, or std::nullopt.
+/// Returns the answer to a request if the answer is constant and needs no login; otherwise std::nullopt.
 [[nodiscard]] std::optional<std::string> onvif_open_answer(std::string_view request);
-/// Returns answers that are always the same and need a login, or std::nullopt.
+/// Returns the answer to a request if the answer is constant and needs a login; otherwise std::nullopt.
 [[nodiscard]] std::optional<std::string> onvif_fixed_answer(std::string_view request, std::string_view host);
 
 }  // namespace flexura

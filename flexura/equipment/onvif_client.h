@@ -13,20 +13,22 @@
 
 namespace flexura {
 
-/// What a client needs from its surroundings. Tests replace them.
+/// Functions of the environment that a client calls. Tests replace them.
 struct OnvifPorts {
   std::function<Outcome<std::unique_ptr<Link>>()> connect;  ///< Opens a connection to the camera.
   std::function<double()> now;                              ///< Steady time, s.
 };
 
-/// A camera's clock and login. It signs requests. All functions may be called from several threads.
+/// Login to a camera, with the time of the camera's clock. An OnvifLogin makes the signatures of requests.
+/// All functions may be called from several threads.
 class OnvifLogin {
  public:
   OnvifLogin(std::string user, std::string password);
 
-  /// Takes the camera's time, s since 1970, at the steady time `now`.
+  /// Stores that the camera's clock shows a time, s since 1970, at the steady time `now`, s.
   void set_clock(double camera_time, double now);
-  /// Returns a token for one request; std::nullopt without a login. Its time is that of the camera's clock.
+  /// Returns the signature (token) for one request; std::nullopt without a login. The token contains the time
+  /// of the camera's clock.
   [[nodiscard]] std::optional<OnvifToken> token(double now) const;
 
  private:
@@ -35,16 +37,17 @@ class OnvifLogin {
   std::optional<double> offset_;  // Camera's time minus steady time.
 };
 
-/// Sends requests to an ONVIF camera over one kept connection and takes the answers. A connection that the
-/// camera has closed is opened again. All waiting has a limit. Not for several threads at once.
+/// Sends requests to an ONVIF camera over one permanent connection, and receives the answers. If the camera
+/// closes the connection, the client opens it again. All waits have a timeout. Only one thread may use it at
+/// a time.
 class OnvifClient {
  public:
   /// An answer.
   struct Answer {
     std::string soap;
-    double time = 0;  ///< Steady time of its arrival.
+    double time = 0;  ///< Steady time at which the answer arrived, s.
   };
-  /// A request. `name`: for messages, such as "GetStatus".
+  /// A request. `name`: name for messages, such as "GetStatus".
   struct Request {
     std::string_view name, path, body;
     bool is_signed = true;
@@ -53,10 +56,10 @@ class OnvifClient {
   /// `login` is shared with other clients of the camera.
   OnvifClient(OnvifPorts ports, const OnvifConfig& config, std::shared_ptr<OnvifLogin> login);
 
-  /// Returns the answer, or a fault with one line. `is_wanted`: whether to send the request (again); else the
-  /// fault is `refused`.
+  /// Sends a request. Returns the answer, or a fault with one line. `is_wanted`: returns whether the request
+  /// may still be sent; if not, the fault is `refused`.
   [[nodiscard]] Outcome<Answer> call(const Request& request, const std::function<bool()>& is_wanted = {});
-  /// Asks the camera for its time, for the login.
+  /// Asks the camera for the time of its clock, which the login needs.
   [[nodiscard]] CommandOutcome ask_clock();
 
  private:
@@ -75,7 +78,7 @@ class OnvifClient {
 
 /// Returns the camera's name for messages.
 [[nodiscard]] std::string onvif_name(const OnvifConfig& config);
-/// Returns the host and port for headers of requests.
+/// Returns the host and port, as in headers of requests.
 [[nodiscard]] std::string onvif_host(const OnvifConfig& config);
 
 }  // namespace flexura

@@ -28,7 +28,7 @@ Table<Turn> onvif_turn_table(const char* name, const char* meaning, const char* 
       .field("zero", &Turn::zero,
              {.meaning = "Position at the head's angle 0.", .range = between(-most_onvif, most_onvif)})
       .field("limits", &Turn::limits,
-             {.meaning = "Smallest and largest position to command.",
+             {.meaning = "Smallest and largest position that the program commands.",
               .range = between(-most_onvif, most_onvif),
               .default_text = "the head's range"})
       .field("tolerance", &Turn::tolerance,
@@ -98,17 +98,20 @@ const Table<OnvifTiltConfig>& fields_of(const OnvifTiltConfig*) {
 const Table<OnvifZoomConfig>& fields_of(const OnvifZoomConfig*) {
   static const auto table =
       Table<OnvifZoomConfig>("onvif_zoom", "Zoom of an ONVIF head.")
-          .field("points", &OnvifZoomConfig::points,
-                 {.meaning =
-                      "Positions of the head, ascending. The first and the last are the range to command.",
-                  .range = between(-most_onvif, most_onvif),
-                  .count = {.min = 2}})
+          .field(
+              "points", &OnvifZoomConfig::points,
+              {.meaning =
+                   "Zoom positions in the head's unit, ascending. The first and the last limit the commands.",
+               .range = between(-most_onvif, most_onvif),
+               .count = {.min = 2}})
           .field("positions", &OnvifZoomConfig::positions,
-                 {.meaning = "Zoom position at each of the points, ascending; linear between them.",
+                 {.meaning = "Zoom position at each of the points, ascending. Between the points it is "
+                             "interpolated linearly.",
                   .range = between(-1e9, 1e9),
                   .default_text = "the points"})
           .field("tolerance", &OnvifZoomConfig::tolerance,
-                 {.meaning = "Largest distance from the target at which zooming counts as done, in points.",
+                 {.meaning =
+                      "Largest distance from the target at which zooming counts as done, in the head's unit.",
                   .range = between(0, most_onvif)});
   return table;
 }
@@ -118,31 +121,34 @@ const Table<OnvifConfig>& fields_of(const OnvifConfig*) {
       Table<OnvifConfig>("onvif", "Pan/tilt/zoom head of an ONVIF camera.")
           .field("link", &OnvifConfig::link, {.meaning = "Address: tcp:HOST:PORT.", .required = true})
           .field("user", &OnvifConfig::user,
-                 {.meaning = "Name for the login.", .default_text = "none: without a login"})
+                 {.meaning = "User name for the login.", .default_text = "none: without a login"})
           .field("password_file", &OnvifConfig::password_file,
                  {.meaning = "Path of a file with the password in its first line.", .default_text = "none"})
           .field("path", &OnvifConfig::path, {.meaning = "Path of the camera's device service."})
           .field("profile", &OnvifConfig::profile,
-                 {.meaning = "Token of the media profile.", .default_text = "the first that has a head"})
-          .field("space", &OnvifConfig::space,
-                 {.meaning = "Positions in which the head is moved and reports: generic numbers or degrees."})
+                 {.meaning = "Token of the media profile.", .default_text = "the first profile with a head"})
+          .field(
+              "space", &OnvifConfig::space,
+              {.meaning =
+                   "Unit of the positions that the head receives and reports: generic numbers or degrees."})
           .field("pan", &OnvifConfig::pan, {.meaning = "Pan axis."})
           .field("tilt", &OnvifConfig::tilt, {.meaning = "Tilt axis."})
-          .field("zoom", &OnvifConfig::zoom, {.meaning = "Zoom. Not used if the head has none."})
+          .field("zoom", &OnvifConfig::zoom,
+                 {.meaning = "Zoom. This table has no effect if the head has no zoom."})
           .field("speed", &OnvifConfig::speed,
-                 {.meaning = "Share of the highest speed.",
+                 {.meaning = "Speed of moves, as a fraction of the highest speed.",
                   .range = above_up_to(0, 1),
                   .default_text = "the head's setting"})
           .field("reply_timeout", &OnvifConfig::reply_timeout,
-                 {.meaning = "Longest time until the head answers.",
+                 {.meaning = "Longest wait for the answer of the head.",
                   .unit = Unit::second,
                   .range = onvif_timeout_range})
           .field("tries", &OnvifConfig::tries,
-                 {.meaning = "Times that a request is sent before a head counts as lost.",
+                 {.meaning = "Number of times that a request is sent before a head counts as lost.",
                   .range = between(1, 20)})
           .field("stall_time", &OnvifConfig::stall_time,
-                 {.meaning = "Time after which a head that stands away from its target is commanded again, "
-                             "and that a head needs to stop.",
+                 {.meaning = "Time for which a head may rest away from its target. After this time the "
+                             "command is repeated. A head must also stop within this time after a halt.",
                   .unit = Unit::second,
                   .range = above_up_to(0, 100)})
           .check([](const OnvifConfig& config, Reader& reader) {

@@ -12,20 +12,20 @@
 
 namespace flexura {
 
-/// In which positions a head is moved and reports.
+/// Position space in which a head is commanded and reports.
 enum class OnvifPositions {
   generic,  ///< Numbers, usually -1 to 1 (PositionGenericSpace).
   degrees,  ///< Degrees (SphericalPositionSpaceDegrees).
 };
 const std::vector<std::string>& names_of(const OnvifPositions*);
 
-/// Pan or tilt of an ONVIF head. Positions are the head's own numbers.
+/// Pan or tilt of an ONVIF head. Positions are in the head's unit.
 struct OnvifTurnConfig {
   /// Positions per degree; below 0 if positions grow to the camera's right, or downwards. Default: for
   /// `degrees`, -1 for pan and 1 for tilt; for `generic`, -1/180 and 1/90.
   std::optional<double> per_degree = {};
   double zero = 0;  ///< Position at the head's angle 0.
-  /// Smallest and largest position to command. Default: the head's own range.
+  /// Smallest and largest position that the program commands. Default: the head's range.
   std::optional<std::array<double, 2>> limits = {};
   double tolerance = 0.2;  ///< Largest distance from the target at which a move counts as done, degrees.
 };
@@ -36,30 +36,32 @@ struct OnvifTiltConfig : OnvifTurnConfig {};
 
 /// The zoom of an ONVIF head.
 struct OnvifZoomConfig {
-  /// Positions of the head, ascending; at least 2. The first and the last are the range to command.
+  /// Zoom positions in the head's unit, ascending; at least 2. The first and the last limit the commands.
   std::vector<double> points = {0, 1};
-  /// Zoom position (HeadState::zoom) at each of the points, ascending; linear between them. Default: the
-  /// points.
+  /// Zoom position (HeadState::zoom) at each of the points, ascending. Between the points it is interpolated
+  /// linearly. Default: the points.
   std::optional<std::vector<double>> positions = {};
-  double tolerance = 0.01;  ///< Largest distance from the target at which zooming counts as done, in points.
+  double tolerance =
+      0.01;  ///< Largest distance from the target at which zooming counts as done, in the head's unit.
 };
 
 /// A pan/tilt/zoom head of an ONVIF camera.
 struct OnvifConfig {
   std::string link;                            ///< Address, tcp:HOST:PORT.
-  std::string user;                            ///< Name for the login; empty: no login.
+  std::string user;                            ///< User name for the login; empty: no login.
   std::string password_file;                   ///< File with the password in its first line.
   std::string path = "/onvif/device_service";  ///< Path of the device service.
-  std::string profile;  ///< Token of the media profile; empty: the first that has a head.
+  std::string profile;  ///< Token of the media profile; empty: the first profile with a head.
   OnvifPositions space = OnvifPositions::generic;
   OnvifPanConfig pan;
   OnvifTiltConfig tilt;
   OnvifZoomConfig zoom;
-  std::optional<double> speed = {};  ///< Share of the highest speed; > 0, at most 1. Default: the head's own.
-  double reply_timeout = 2;          ///< Longest time until the head answers, s; > 0, at most 30.
-  std::int64_t tries = 3;            ///< Times that a request is sent before a head counts as lost; 1 to 20.
-  /// Time after which a head that stands away from its target is commanded again, and that a head needs to
-  /// stop, s; > 0.
+  std::optional<double> speed = {};  ///< Speed of moves as a fraction of the highest speed; > 0, at most 1.
+                                     ///< Default: the head's setting.
+  double reply_timeout = 2;          ///< Longest wait for the answer of the head, s; > 0, at most 30.
+  std::int64_t tries = 3;  ///< Number of times that a request is sent before a head counts as lost; 1 to 20.
+  /// Time for which a head may rest away from its target, s; > 0. After this time the command is repeated. A
+  /// head must also stop within this time after a halt.
   double stall_time = 3;
 };
 
@@ -74,7 +76,7 @@ const Table<OnvifConfig>& fields_of(const OnvifConfig*);
 /// Returns the URI of the configured position space of pan and tilt.
 [[nodiscard]] std::string_view onvif_space(const OnvifConfig& config);
 
-/// Positions to command.
+/// Ranges of the positions that the program commands.
 struct OnvifRanges {
   OnvifRange pan, tilt;
   bool has_zoom = false;
@@ -82,9 +84,10 @@ struct OnvifRanges {
 /// Returns the position nearest to a state, within the ranges. The state must be finite.
 [[nodiscard]] OnvifPlace onvif_place(const OnvifConfig& config, const OnvifRanges& ranges,
                                      const HeadState& state);
-/// Returns the state at a position, also outside the ranges. Without a zoom, that of the first point.
+/// Returns the state at a position, also outside the ranges. If the position has no zoom, the state has the
+/// zoom position of the first point.
 [[nodiscard]] HeadState onvif_state(const OnvifConfig& config, const OnvifPlace& place);
-/// Returns whether two positions are equal within the tolerances. A missing zoom equals any.
+/// Returns whether two positions are equal within the tolerances. A missing zoom is equal to any zoom.
 [[nodiscard]] bool are_near(const OnvifConfig& config, const OnvifPlace& a, const OnvifPlace& b);
 
 }  // namespace flexura

@@ -16,70 +16,73 @@ namespace flexura {
 
 /// A simulated ONVIF camera with a head.
 struct OnvifModel {
-  std::string user = "operator", password = "secret";       ///< Empty user: no login is needed.
-  OnvifRange pan = {-1, 1}, tilt = {-1, 1}, zoom = {0, 1};  ///< Range of the generic space.
-  /// Degrees at the ends of the ranges of pan and tilt.
+  std::string user = "operator",
+              password = "secret";  ///< Login of the camera; empty user: no login is needed.
+  OnvifRange pan = {-1, 1}, tilt = {-1, 1}, zoom = {0, 1};  ///< Ranges in the generic position space.
+  /// Angles at the ends of the ranges of pan and tilt, degrees.
   OnvifRange pan_degrees = {-180, 180}, tilt_degrees = {-90, 90};
   std::array<double, 3> rates = {0.5, 0.5,
                                  0.5};  ///< Highest speeds of pan, tilt and zoom, generic positions/s.
   bool reports_degrees = false;         ///< Whether GetStatus reports degrees.
   bool has_degrees = true, has_zoom = true, has_services = true, reports_motion = true;
-  bool obeys = true;                    ///< Otherwise, it accepts moves and does nothing.
-  bool refuses = false;                 ///< Whether it refuses moves with a fault.
-  bool wants_http_login = false;        ///< Whether it answers everything with HTTP status 401.
-  bool refuses_replays = true;          ///< Otherwise, a signature counts as often as it comes.
-  double epoch = 1.7e9;                 ///< Its clock at the time 0, s since 1970.
-  double most_age = 5;                  ///< Largest difference of a signature's time to its clock, s.
-  double reply_delay = 0.01;            ///< Time until it answers, s.
-  std::string host = "127.0.0.1:8080";  ///< In the addresses of its services.
+  bool obeys = true;              ///< Whether the camera executes the moves that it accepts.
+  bool refuses = false;           ///< Whether the camera refuses moves with a fault.
+  bool wants_http_login = false;  ///< Whether the camera answers all requests with HTTP status 401.
+  bool refuses_replays = true;    ///< Whether each signature is valid only once.
+  double epoch = 1.7e9;           ///< Time of the camera's clock at the time 0, s since 1970.
+  double most_age = 5;  ///< Largest difference between the time of a signature and the camera's clock, s.
+  double reply_delay = 0.01;            ///< Time from a request to the answer, s.
+  std::string host = "127.0.0.1:8080";  ///< Host in the addresses of the services.
 };
 
 /// Faults of a camera's answers.
 enum class OnvifFault {
   none,
-  silent,             ///< It does not answer.
-  truncated,          ///< The second half is missing, and the connection stays open.
-  closes,             ///< It closes the connection in the middle of an answer.
-  hangs_up,           ///< It closes the connection without an answer.
+  silent,             ///< The camera does not answer.
+  truncated,          ///< The second half of the answer is missing, and the connection stays open.
+  closes,             ///< The camera closes the connection in the middle of an answer.
+  hangs_up,           ///< The camera closes the connection without an answer.
   garbage,            ///< The answer is not HTTP.
   not_soap,           ///< The answer is a web page.
-  huge,               ///< The answer is larger than a client takes.
-  duplicate_headers,  ///< Two different lengths.
-  chunked,            ///< A chunked encoding, which is valid.
-  in_pieces,          ///< One byte after the other, which is valid.
-  unmarked,           ///< The end of the connection is the end of the answer, which is valid.
+  huge,               ///< The answer is larger than a client accepts.
+  duplicate_headers,  ///< The answer has two headers with different lengths.
+  chunked,            ///< The answer has a chunked encoding, which is valid.
+  in_pieces,          ///< The answer arrives byte by byte, which is valid.
+  unmarked,           ///< The camera marks the end of the answer by closing the connection, which is valid.
 };
 
-/// What a camera sends on one connection.
+/// Bytes that a camera sends on one connection at one time.
 struct OnvifChunk {
-  double at = 0;  ///< When, s.
+  double at = 0;  ///< Time of sending, s.
   std::string bytes;
-  bool closes = false;  ///< Whether it closes the connection after that.
+  bool closes = false;  ///< Whether the camera closes the connection after these bytes.
 };
 
-/// A simulated ONVIF camera: it answers requests of the device, media and PTZ services, checks logins, and
-/// moves its head in time. It needs no thread and no clock of its own.
+/// A simulated ONVIF camera. An OnvifDevice answers requests of the device, media and PTZ services, checks
+/// logins, and simulates the motion of its head. The device has neither a thread nor a clock: the caller
+/// passes the time.
 class OnvifDevice {
  public:
-  /// A camera whose head is at pan 0 and tilt 0, with the smallest zoom.
+  /// Makes a camera whose head is at pan 0 and tilt 0, with the smallest zoom.
   explicit OnvifDevice(OnvifModel model = {});
 
-  /// Returns the properties; they may be changed.
+  /// Returns the properties, which the caller may change.
   [[nodiscard]] OnvifModel& model() { return model_; }
-  /// Answers `count` requests with a fault, from now on.
+  /// Makes the next `count` answers faulty.
   void fail(OnvifFault fault, std::size_t count = 1000000);
-  /// Returns what the camera sends for a request at time `now`, s, >= that of the previous call.
+  /// Returns the chunks that the camera sends for a request at time `now`, s, which must not be before the
+  /// time of the previous call.
   [[nodiscard]] std::vector<OnvifChunk> answer(const HttpMessage& request, double now);
 
-  /// Puts the head at a generic position, at rest.
+  /// Puts the head at a position of the generic position space, at rest.
   void put(const OnvifPlace& place);
-  /// Returns the position at time `now`, generic.
+  /// Returns the position at time `now`, s, in the generic position space.
   [[nodiscard]] OnvifPlace place(double now) const;
   /// Returns whether the head moves at time `now`, s.
   [[nodiscard]] bool is_moving(double now) const;
-  /// Blocks the axes where they are, as an obstacle does, or releases them.
+  /// Blocks the axes at their present positions, as an obstacle would, or releases them.
   void block(bool is_blocked, double now);
-  /// Returns the number of requests with a name, such as "Stop", that were executed.
+  /// Returns the number of executed requests with a name, such as "Stop".
   [[nodiscard]] std::size_t executed(std::string_view name) const;
 
  private:
@@ -117,7 +120,7 @@ class OnvifStream {
  public:
   /// A connection to `device`, which must outlive it.
   explicit OnvifStream(OnvifDevice& device) : device_(device), reader_(HttpReader::Side::requests) {}
-  /// Takes bytes that arrive at time `now`. Returns what the camera sends for them.
+  /// Processes bytes that arrive at time `now`, s. Returns the chunks that the camera sends as an answer.
   std::vector<OnvifChunk> receive(std::string_view bytes, double now);
 
  private:

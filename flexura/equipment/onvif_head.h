@@ -17,27 +17,28 @@ namespace flexura {
 
 /// The pan/tilt/zoom head of an ONVIF camera, moved by absolute moves.
 ///
-/// Every move is verified: a reading is `moving` until the head has reported the target's position. A head
-/// that stands elsewhere for `stall_time` is commanded again. If that does not help, readings are refused
-/// with a message, until the next command or halt.
+/// Every move is verified: a reading is `moving` until the head has reported the target's position. If the
+/// head rests elsewhere for `stall_time`, the command is repeated. If the repetition has no effect, read()
+/// returns a fault until the next command or halt.
 ///
-/// command() and read() may be called from several threads, and halt() at any time: it has a connection of
-/// its own. A command that a halt interrupts is refused.
+/// command() and read() may be called from several threads. halt() may be called at any time, because it uses
+/// a separate connection. A command that is interrupted by a halt returns a fault.
 class OnvifHead : public HeadPort {
  public:
-  /// Throws std::invalid_argument for an invalid configuration. `password`: that of the user. Messages do not
-  /// contain it.
+  /// Throws std::invalid_argument for an invalid configuration. `password`: the user's password, which
+  /// messages do not contain.
   OnvifHead(OnvifPorts ports, const OnvifConfig& config, std::string password);
 
-  /// Asks the camera for its time, services, profiles, ranges and the head's position. Moves nothing.
+  /// Asks the camera for its time, services, profiles, ranges and the head's position. The head does not
+  /// move.
   [[nodiscard]] CommandOutcome start();
-  /// At the start and before every move, `take` gets a request that stops the head, with a new signature
-  /// (Guard). The camera refuses it when the signature is too old. If `take` returns a fault, the head is not
-  /// moved.
+  /// Sets a function `take` that is called at the start and before every move. The argument of `take` is a
+  /// request with a new signature that stops the head (for Guard). The camera refuses this request later if
+  /// the signature is too old. If `take` returns a fault, the head is not moved.
   void share_stop(std::function<CommandOutcome(const std::string& request)> take) {
     share_stop_ = std::move(take);
   }
-  /// Returns a request that stops the head, as sent over a new connection. Call start() before.
+  /// Returns a request that stops the head, to be sent over a new connection. start() must have been called.
   [[nodiscard]] std::string stop_request() const;
 
   CommandOutcome command(const HeadState& state) override;
@@ -97,9 +98,9 @@ class OnvifHead : public HeadPort {
   std::optional<double> halted_;  // Time of a halt that is not verified yet.
 };
 
-/// Connects to a head and starts it. Reads the password from `password_file`. `share_stop`: see
-/// OnvifHead::share_stop(). `connect` opens a connection to the camera; empty: over the network. `clock`
-/// gives the times of readings and must outlive the head.
+/// Connects to a head and calls OnvifHead::start(). Reads the password from `password_file`. `share_stop`:
+/// see OnvifHead::share_stop(). `connect` opens a connection to the camera; default: over the network.
+/// `clock` determines the times of readings and must outlive the head.
 [[nodiscard]] Outcome<std::unique_ptr<OnvifHead>> open_onvif_head(
     const OnvifConfig& config, const ClockPort& clock,
     std::function<CommandOutcome(const std::string& request)> share_stop = {},

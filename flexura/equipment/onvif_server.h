@@ -12,12 +12,12 @@
 
 namespace flexura {
 
-/// Serves a simulated ONVIF camera on a TCP port of the loopback interface, in a thread of its own and in
-/// real time, until the server's end. Its times are steady_seconds().
+/// Runs a simulated ONVIF camera on a TCP port of the loopback interface, in a separate thread and in real
+/// time, until this object is destroyed. The clock is steady_seconds().
 class OnvifServer {
  public:
-  /// `device` must outlive this object and is only used under lock(). Its model's host becomes this address.
-  /// `port`: 0 for any that is free. Throws std::runtime_error if the port is taken.
+  /// `device` must outlive this object and is used only under lock(). The `host` in its model is set to the
+  /// address of this server. `port`: 0 for any free port. Throws std::runtime_error if the port is taken.
   explicit OnvifServer(OnvifDevice& device, std::uint16_t port = 0);
   /// Ends the thread and closes all connections.
   ~OnvifServer();
@@ -25,7 +25,7 @@ class OnvifServer {
   OnvifServer& operator=(const OnvifServer&) = delete;
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
-  /// Returns a lock under which the device may be looked at or changed.
+  /// Returns a lock under which the caller may read or change the device.
   [[nodiscard]] std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
 
  private:

@@ -22,14 +22,14 @@ const Table<CameraEquipment>& fields_of(const CameraEquipment*) {
       Table<CameraEquipment>("camera", "Devices of one camera: one source of pictures and at most one head.")
           .field("name", &CameraEquipment::name, {.meaning = "Name of the camera.", .required = true})
           .field("gstreamer", &CameraEquipment::gstreamer,
-                 {.meaning = "Pictures through GStreamer, for example of a network camera.",
+                 {.meaning = "Pictures from a GStreamer pipeline, for example from a network camera.",
                   .default_text = "none"})
           .field("aravis", &CameraEquipment::aravis,
-                 {.meaning = "Pictures of a GigE Vision or USB3 Vision camera.", .default_text = "none"})
+                 {.meaning = "Pictures from a GigE Vision or USB3 Vision camera.", .default_text = "none"})
           .field("v4l2", &CameraEquipment::v4l2,
-                 {.meaning = "Pictures of a USB camera.", .default_text = "none"})
+                 {.meaning = "Pictures from a USB camera.", .default_text = "none"})
           .field("visca", &CameraEquipment::visca,
-                 {.meaning = "Head with VISCA commands.", .default_text = "none"})
+                 {.meaning = "Pan/tilt/zoom head that is moved by VISCA commands.", .default_text = "none"})
           .field("onvif", &CameraEquipment::onvif,
                  {.meaning = "Head of an ONVIF network camera.", .default_text = "none"})
           .field("v4l2_head", &CameraEquipment::v4l2_head,
@@ -51,17 +51,18 @@ const Table<CameraEquipment>& fields_of(const CameraEquipment*) {
 const Table<RigEquipment>& fields_of(const RigEquipment*) {
   constexpr std::size_t most_controllers = 16, most_cameras = 16, most_axes = 64;
   static const auto table =
-      Table<RigEquipment>("rig", "Equipment that runs the experiment, instead of the simulation.")
+      Table<RigEquipment>("rig", "Real equipment that executes the experiment, in place of the simulation.")
           .field("watchdog", &RigEquipment::watchdog,
-                 {.meaning = "Longest time for which the program may be silent while the arm moves. Then a "
-                             "second process stops all devices.",
+                 {.meaning = "Longest time without a sign of life of the program while the arm moves. After "
+                             "this time a second process stops all devices.",
                   .unit = Unit::second,
                   .range = between(0.05, 10)})
-          .field("start", &RigEquipment::start,
-                 {.meaning = "How motor positions become known. `declared`: the arm has its initial shape. "
-                             "`homed`: the axes move to their limit switches, then slowly to the initial "
-                             "shape. `pretensioned`: as homed, but tendons that are tight are let out first, "
-                             "so that all are pulled in together."})
+          .field(
+              "start", &RigEquipment::start,
+              {.meaning = "How the program determines the motor positions. `declared`: it assumes that the "
+                          "arm has its initial shape. `homed`: the axes move to their limit switches, then "
+                          "slowly to the initial shape. `pretensioned`: as `homed`, but tight tendons are "
+                          "let out first, so that finally all tendons are pulled in together."})
           .field("home", &RigEquipment::home,
                  {.meaning = "Motor positions at the limit switches, microsteps, one per axis.",
                   .count = {0, most_axes},
@@ -72,7 +73,7 @@ const Table<RigEquipment>& fields_of(const RigEquipment*) {
                .unit = Unit::metre_per_second,
                .range = above_up_to(0, 0.1)})
           .field("grbl", &RigEquipment::grbl,
-                 {.meaning = "Controllers with Grbl, in the order of the axes.",
+                 {.meaning = "Motion controllers with Grbl or grblHAL, in the order of their axes.",
                   .count = {0, most_controllers},
                   .default_text = "none"})
           .field("cia402", &RigEquipment::cia402,

@@ -12,19 +12,19 @@ namespace flexura {
 /// One message in readable form.
 struct SentText {
   std::string text;
-  bool asks = false;  ///< Whether it only asks for a state, and changes nothing.
+  bool asks = false;  ///< Whether the message only asks for a state and changes nothing.
 };
 
 /// Returns the lines and realtime bytes that are sent to a Grbl controller, for example "$J=G90G21X1F60" and
 /// "0x85 (cancel jog)".
 [[nodiscard]] std::vector<SentText> grbl_sent(std::string_view bytes);
-/// Returns a VISCA packet in hexadecimal digits, with its meaning. `framing`: how it is sent. `digits`: those
-/// of the head's positions.
+/// Returns a VISCA packet in hexadecimal digits, with its meaning. `framing`: framing of the packet.
+/// `digits`: numbers of digits of the head's positions.
 [[nodiscard]] SentText visca_sent(std::string_view bytes, ViscaFraming framing, ViscaDigits digits);
-/// Returns the request for an ONVIF camera in an HTTP message, with its positions.
+/// Returns the ONVIF request in an HTTP message, with its positions.
 [[nodiscard]] SentText onvif_sent(std::string_view bytes);
-/// Returns a CAN frame as can-utils print it ("201#0F00"), with its meaning to a drive that Cia402Drive has
-/// set up. `bytes`: as bytes_of() gives them.
+/// Returns a CAN frame in the format of can-utils ("201#0F00"), with its meaning for a drive that Cia402Drive
+/// has configured. `bytes`: result of bytes_of().
 [[nodiscard]] SentText can_sent(std::string_view bytes);
 
 }  // namespace flexura

@@ -171,7 +171,8 @@ std::string V4l2Connection::set() {
   const bool has_own = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
   const std::uint32_t can = has_own ? capability.device_caps : capability.capabilities;
   if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0)
-    return "it gives no pictures: a camera has several devices, try the one with the next lower number";
+    return "it delivers no pictures: a camera has several devices, so try the device with the next lower "
+           "number";
   if (std::string problem = set_format(); !problem.empty()) return problem;
   set_rate();
   return set_light();
@@ -204,7 +205,7 @@ std::string V4l2Connection::set_format() {
     return "";
   }
   return fmt::format(
-      "it gives no {} x {} pixels in a format for pixels = \"{}\"{}: set sensor.width and "
+      "it has no format with {} x {} pixels for pixels = \"{}\"{}: set sensor.width and "
       "sensor.height, or format",
       sensor.width, sensor.height, name_of(sensor.pixels), sizes);
 }
@@ -229,10 +230,11 @@ std::string V4l2Connection::set_control(std::uint32_t id, std::int32_t value, co
   v4l2_control control{};
   control.id = id, control.value = value;
   int result = device_.ioctl(VIDIOC_S_CTRL, &control);
-  if (result < 0) return fmt::format("it does not take {} = {} ({})", name, value, v4l2_error(result));
+  if (result < 0) return fmt::format("it refuses {} = {} ({})", name, value, v4l2_error(result));
   result = device_.ioctl(VIDIOC_G_CTRL, &control);
   if (result >= 0 && control.value != value)
-    return fmt::format("it made {} of {} = {}: set a value that it has", control.value, name, value);
+    return fmt::format("it set {} instead of {} = {}: set a value that the camera supports", control.value,
+                       name, value);
   return "";
 }
 

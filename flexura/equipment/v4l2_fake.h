@@ -14,18 +14,18 @@ namespace flexura {
 /// A control of a simulated video device.
 struct FakeControl {
   std::int32_t min = 0, max = 0, step = 1;
-  std::int32_t value = 0;   ///< What the device reports.
+  std::int32_t value = 0;   ///< Value that the device reports.
   std::int32_t target = 0;  ///< Commanded value.
   std::int32_t rate = 0;    ///< Change per reading towards the target; 0: at once.
-  bool is_stuck = false;    ///< Whether it accepts values and does nothing.
+  bool is_stuck = false;    ///< Whether the device accepts values without effect.
 };
 
-/// A simulated video device in the system's place. It takes one picture with every wait for a frame, and
-/// needs no clock: a picture's time stamp is its sequence number times the period. All functions may be
-/// called from several threads.
+/// A simulated video device that replaces the system calls. V4l2Fake takes one picture at every wait for a
+/// frame. A clock is not needed, because the time stamp of a picture is its sequence number times the frame
+/// period. All functions may be called from several threads.
 class V4l2Fake : public V4l2Calls {
  public:
-  /// Makes a device "video0" in any folder, with one pixel format (V4L2_PIX_FMT_...) and size, px.
+  /// Makes a device "video0" in any folder, with one pixel format (V4L2_PIX_FMT_...) and one image size, px.
   V4l2Fake(std::uint32_t format, int width, int height);
 
   int open(const std::string& path) override;
@@ -37,14 +37,14 @@ class V4l2Fake : public V4l2Calls {
 
   /// Sets the bytes of each picture; default: all 0.
   void set_picture(std::vector<std::uint8_t> bytes);
-  /// The next `count` pictures are lost (not delivered) or damaged (delivered as erroneous).
+  /// Makes the next `count` pictures lost (not delivered) or damaged (delivered with an error flag).
   void lose(std::uint32_t count);
   void damage(std::uint32_t count);
-  /// Pulls out the plug, or puts it back in.
+  /// Disconnects the device (false) or connects it again (true).
   void set_plugged(bool is_plugged);
   /// While true, the device takes no pictures.
   void set_silent(bool is_silent);
-  /// Adds or replaces a control, V4L2_CID_...
+  /// Adds or replaces the control with the number `id` (V4L2_CID_...).
   void set_control(std::uint32_t id, const FakeControl& control);
   [[nodiscard]] FakeControl control(std::uint32_t id);
   /// Returns the number of open devices and mapped buffers.

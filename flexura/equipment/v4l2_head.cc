@@ -73,7 +73,7 @@ std::optional<PortFault> V4l2Head::set(Axis& axis, std::int32_t value) {
   control.id = axis.control;
   control.value = value;
   if (const int result = device_.ioctl(VIDIOC_S_CTRL, &control); result < 0)
-    return lost(fmt::format("it does not take a {} of {}: {}", axis.name, value, v4l2_error(result)));
+    return lost(fmt::format("it refuses a {} of {}: {}", axis.name, value, v4l2_error(result)));
   axis.target = value;
   axis.nearest = std::abs(std::int64_t{before.value()} - value);
   axis.progress = clock_.now();
@@ -121,7 +121,7 @@ std::optional<PortFault> V4l2Head::check(Axis& axis, std::int32_t value, bool* i
   if (distance < axis.step) return std::nullopt;
   if (now - axis.progress <= config_.patience) return *is_moving = true, std::nullopt;
   return refused(
-      fmt::format("its {} stands at {} although it took a command to {}: check that nothing blocks it "
+      fmt::format("its {} is at {} although it accepted a command to {}: check that nothing blocks it "
                   "and that the camera's firmware moves it",
                   axis.name, value, *axis.target));
 }

@@ -14,26 +14,27 @@
 
 namespace flexura {
 
-/// Pan, tilt and zoom of a camera of the kernel's video interface, by its absolute controls.
+/// Pan, tilt and zoom of a Video4Linux2 camera, by its absolute controls.
 struct V4l2HeadConfig {
   std::string device = "/dev/video0";  ///< Path.
   double zoom_step = 1;  ///< Zoom position (HeadState::zoom) per unit of the device's control, > 0.
-  double patience = 2;   ///< Time within which an axis must move after a command, s.
+  double patience =
+      2;  ///< Longest time for which an axis may fail to approach its target after a command, s.
 };
 
 const Table<V4l2HeadConfig>& fields_of(const V4l2HeadConfig*);
 
-/// A head whose axes are controls of a video device. Angles have a resolution of one second of arc or more.
-/// Axes without a control are fixed at 0 (zoom: 1); a command that moves them is refused.
+/// A head whose axes are controls of a video device. The resolution of angles is one second of arc, or
+/// coarser. An axis without a control is fixed at 0 (zoom: 1), and commands to move it return a fault.
 ///
-/// The controls report positions but no motion: an axis counts as moving until it reports its target. An axis
-/// that does not come closer to its target for longer than the patience is a fault of read(), because cameras
-/// exist that accept a move and do nothing. The device has no command to stop: halt() commands the present
-/// position. All functions may be called from several threads.
+/// The controls report positions but not whether an axis moves. So an axis counts as moving until it reports
+/// its target position. read() returns a fault if an axis does not approach its target for longer than
+/// `patience`, because some cameras accept a move without executing it. Since the device has no stop command,
+/// halt() commands the present position. All functions may be called from several threads.
 class V4l2Head : public HeadPort {
  public:
-  /// Opens the device. Fails if it cannot be opened or has none of the controls. `clock` must outlive the
-  /// head.
+  /// Opens the device. Fails if the device cannot be opened or has none of the controls. `clock` must outlive
+  /// the head.
   [[nodiscard]] static Outcome<std::unique_ptr<V4l2Head>> open(
       const V4l2HeadConfig& config, const std::string& name, const ClockPort& clock,
       const std::shared_ptr<V4l2Calls>& calls = v4l2_system_calls());

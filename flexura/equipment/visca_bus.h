@@ -20,35 +20,38 @@
 
 namespace flexura {
 
-/// What became of a command.
+/// Result of a command.
 struct ViscaResult {
-  /// `accepted`: the head executes it. `refused`: the head answered with an error. `revoked`: `is_allowed`
-  /// no longer held. `lost`: no answer.
+  /// `accepted`: the head executes the command. `refused`: the head answered with an error. `revoked`:
+  /// `is_allowed` returned false. `lost`: there was no answer.
   enum class Kind { accepted, refused, revoked, lost };
   Kind kind = Kind::lost;
-  std::uint64_t number = 0;  ///< Of an accepted command, for ViscaBus::progress().
+  std::uint64_t number = 0;  ///< Number of an accepted command, for ViscaBus::progress().
   int code = 0;              ///< Error code of a refusal.
-  std::string what = {};     ///< Message, if lost.
+  std::string what = {};     ///< Message if the command was lost.
 };
 
-/// A link that one or more VISCA heads share. Sends packets, again if no answer comes, and gives each answer
-/// to the request that it belongs to.
+/// A link that one or more VISCA heads share. A ViscaBus sends packets, repeats packets without an answer,
+/// and assigns each answer to its request.
 ///
-/// All functions may be called from several threads. Whichever thread waits for an answer reads the link for
-/// all. Each wait ends after `tries` times `reply_timeout` for each request that waits for the same head.
+/// All functions may be called from several threads. A thread that waits for an answer also reads the answers
+/// for all other threads. A wait lasts at most `tries` times `reply_timeout` for each request that waits for
+/// the same head.
 class ViscaBus {
  public:
-  /// `now`: the time, s, also that of readings. Throws std::invalid_argument for an invalid configuration.
+  /// `now`: function that returns the time, s, also for the times of readings. Throws std::invalid_argument
+  /// for an invalid configuration.
   ViscaBus(std::unique_ptr<Link> link, const ViscaBusConfig& config,
            std::function<double()> now = steady_seconds);
 
   /// Prepares the link: numbers the heads of a chain and empties their buffers, or resets sequence numbers.
   [[nodiscard]] CommandOutcome start();
 
-  /// Condition for sending, checked before each try. Called under the bus' lock: it must not use the bus.
+  /// Condition for sending, checked before each try. The function is called while the bus is locked, so it
+  /// must not use the bus.
   using Condition = std::function<bool()>;
-  /// Sends a command to the head `address` and waits until it accepts. An urgent command does not wait for
-  /// other requests.
+  /// Sends a command to the head at `address`, and waits until the head accepts it. An urgent command does
+  /// not wait for other requests.
   [[nodiscard]] ViscaResult command(int address, std::string_view body, const Condition& is_allowed,
                                     bool is_urgent = false);
   /// An answer to an inquiry.
@@ -59,10 +62,10 @@ class ViscaBus {
   /// Sends an inquiry and waits for an answer with `size` bytes of data.
   [[nodiscard]] Outcome<Answer> inquire(int address, std::string_view body, std::size_t size);
 
-  /// Progress of an accepted command. `unknown`: too long ago.
+  /// Progress of an accepted command. `unknown`: the command was too long ago.
   enum class Progress { running, ended, failed, unknown };
   [[nodiscard]] Progress progress(std::uint64_t number) const;
-  /// Returns the socket of a command that runs, if known.
+  /// Returns the head's command buffer (VISCA socket) that holds a running command, if known.
   [[nodiscard]] std::optional<int> socket(std::uint64_t number) const;
   /// Returns the code of the error that ended an accepted command; 0 if there was none.
   [[nodiscard]] int failure(std::uint64_t number) const;
@@ -73,7 +76,7 @@ class ViscaBus {
   [[nodiscard]] double now() const { return now_(); }
   /// Returns the number of heads of the chain; 0 if unknown.
   [[nodiscard]] int heads() const;
-  /// Returns "LINK, VISCA head 2".
+  /// Returns the name of a head for messages, for example "LINK, VISCA head 2".
   [[nodiscard]] std::string name_of(int address) const;
 
  private:

@@ -26,9 +26,10 @@ Table<Turn> visca_turn_table(const char* name, const char* meaning, const char* 
               .range = between(-1e4, 1e4)})
       .field("zero", &Turn::zero, {.meaning = "Count at the head's angle 0.", .range = visca_count_range})
       .field("limits", &Turn::limits,
-             {.meaning = "Smallest and largest count to command.", .range = visca_count_range})
+             {.meaning = "Smallest and largest count that the program commands.", .range = visca_count_range})
       .field("digits", &Turn::digits,
-             {.meaning = "Hexadecimal digits of a position in the head's commands.", .range = between(4, 5)})
+             {.meaning = "Number of hexadecimal digits of a position in the head's commands.",
+              .range = between(4, 5)})
       .field("speed", &Turn::speed,
              {.meaning = "Speed byte of moves, as the head's manual lists it.", .range = between(0, 24)})
       .field("tolerance", &Turn::tolerance,
@@ -98,19 +99,20 @@ const Table<ViscaBusConfig>& fields_of(const ViscaBusConfig*) {
                              "tcp:HOST:PORT.",
                   .required = true})
           .field("framing", &ViscaBusConfig::framing,
-                 {.meaning = "How packets are sent: one after the other, each in a datagram, or each in a "
-                             "datagram after Sony's header.",
+                 {.meaning = "How packets are sent. `stream`: one after the other. `datagram`: each packet "
+                             "in a datagram. `sony`: each packet in a datagram, after Sony's header.",
                   .default_text = "stream for a serial line or TCP, sony for UDP port 52381, datagram for "
                                   "another UDP port"})
-          .field("set_addresses", &ViscaBusConfig::set_addresses,
-                 {.meaning = "Whether to number the heads of a chain, from 1, at the start.",
-                  .default_text = "on a serial line only"})
+          .field(
+              "set_addresses", &ViscaBusConfig::set_addresses,
+              {.meaning = "Whether the program numbers the heads of a chain at the start, beginning with 1.",
+               .default_text = "on a serial line only"})
           .field("reply_timeout", &ViscaBusConfig::reply_timeout,
-                 {.meaning = "Longest time until a head answers.",
+                 {.meaning = "Longest wait for the answer of a head.",
                   .unit = Unit::second,
                   .range = visca_timeout_range})
           .field("tries", &ViscaBusConfig::tries,
-                 {.meaning = "Times that a message is sent before a head counts as lost.",
+                 {.meaning = "Number of times that a message is sent before a head counts as lost.",
                   .range = between(1, 20)})
           .check([](const ViscaBusConfig& config, Reader& reader) {
             if (const std::string problem = visca_problem(config); !problem.empty())
@@ -137,11 +139,12 @@ const Table<ViscaZoomConfig>& fields_of(const ViscaZoomConfig*) {
   static const auto table =
       Table<ViscaZoomConfig>("visca_zoom", "Zoom of a VISCA head.")
           .field("counts", &ViscaZoomConfig::counts,
-                 {.meaning = "Counts, ascending. The first and the last are the range to command.",
+                 {.meaning = "Zoom counts, ascending. The first and the last count limit the commands.",
                   .range = between(0, most_zoom),
                   .count = {.min = 2}})
           .field("positions", &ViscaZoomConfig::positions,
-                 {.meaning = "Zoom position at each of the counts, ascending; linear between them.",
+                 {.meaning = "Zoom position at each of the counts, ascending. Between the counts it is "
+                             "interpolated linearly.",
                   .range = between(-1e9, 1e9),
                   .default_text = "the counts"})
           .field("tolerance", &ViscaZoomConfig::tolerance,
@@ -152,20 +155,23 @@ const Table<ViscaZoomConfig>& fields_of(const ViscaZoomConfig*) {
 
 const Table<ViscaConfig>& fields_of(const ViscaConfig*) {
   static const auto table =
-      Table<ViscaConfig>("visca", "Pan/tilt/zoom head with VISCA commands.")
+      Table<ViscaConfig>("visca", "Pan/tilt/zoom head that is moved by VISCA commands.")
           .field("bus", &ViscaConfig::bus,
-                 {.meaning = "Connection. Heads with the same link are on one chain.", .required = true})
-          .field("address", &ViscaConfig::address,
-                 {.meaning = "Place in the chain. Over UDP, always 1.", .range = between(1, 7)})
+                 {.meaning = "Connection to the head. Heads with the same link are on one chain.",
+                  .required = true})
+          .field(
+              "address", &ViscaConfig::address,
+              {.meaning = "Address of the head: its place in the chain. Over UDP, the address is always 1.",
+               .range = between(1, 7)})
           .field("pan", &ViscaConfig::pan, {.meaning = "Pan axis."})
           .field("tilt", &ViscaConfig::tilt, {.meaning = "Tilt axis."})
           .field("zoom", &ViscaConfig::zoom, {.meaning = "Zoom."})
           .field("confirm", &ViscaConfig::confirm,
-                 {.meaning = "Whether a position counts only if two answers agree.",
+                 {.meaning = "Whether the program accepts a position only if two answers agree.",
                   .default_text = "true, except with the framing sony"})
           .field("stall_time", &ViscaConfig::stall_time,
-                 {.meaning = "Time after which a head that stands away from its target is commanded again, "
-                             "and that a head needs to stop.",
+                 {.meaning = "Time for which a head may rest away from its target. After this time the "
+                             "command is repeated. A head must also stop within this time after a halt.",
                   .unit = Unit::second,
                   .range = above_up_to(0, 100)})
           .check([](const ViscaConfig& config, Reader& reader) {

@@ -25,7 +25,8 @@ class ViscaMotors {
   ViscaMotors(const ViscaMotors&) = delete;
   ViscaMotors& operator=(const ViscaMotors&) = delete;
 
-  /// Starts a motion at time `now`, s, >= that of all earlier calls. `speed`: share of the highest speed.
+  /// Starts a motion to `count` at time `now`, s, which must not be before the time of earlier calls.
+  /// `speed`: fraction of the highest speed.
   virtual void go(Axis axis, double count, double speed, double now) = 0;
   /// Ends a motion at time `now`.
   virtual void stop(Axis axis, double now) = 0;
@@ -35,10 +36,10 @@ class ViscaMotors {
   [[nodiscard]] virtual bool is_moving(Axis axis, double now) = 0;
 };
 
-/// Motors that run at constant speed.
+/// Motors that move at constant speed.
 class SteadyViscaMotors : public ViscaMotors {
  public:
-  /// `rates`: highest speeds of pan, tilt and zoom, counts/s, > 0. `start`: positions at first.
+  /// `rates`: highest speeds of pan, tilt and zoom, counts/s, > 0. `start`: initial positions.
   explicit SteadyViscaMotors(const std::array<double, 3>& rates = {1440, 1440, 8192},
                              const ViscaCounts& start = {});
   void go(Axis axis, double count, double speed, double now) override;
@@ -46,7 +47,7 @@ class SteadyViscaMotors : public ViscaMotors {
   [[nodiscard]] double count(Axis axis, double now) override;
   [[nodiscard]] bool is_moving(Axis axis, double now) override;
 
-  /// Blocks an axis where it is, as an obstacle does, or releases it.
+  /// Blocks an axis at its present position, as an obstacle would, or releases it.
   void block(Axis axis, bool is_blocked, double now);
 
  private:
@@ -63,29 +64,30 @@ struct ViscaHeadModel {
   ViscaDigits digits;
   ViscaCounts lowest = {-2448, -432, 0}, highest = {2448, 1296, 0x4000};  ///< Ends of travel.
   ViscaVersion version = {0x0020, 0x040E, 0x0100, 2};
-  /// What becomes of a move that is sent while another one is executed.
+  /// Reaction to a move that is sent during another move.
   enum class Overlap { replaces, is_refused };
   Overlap overlap = Overlap::replaces;
   bool reports_acceptance = true, reports_end = true;
-  bool obeys = true;          ///< Otherwise, it accepts moves and does nothing.
-  bool is_on = true;          ///< Otherwise, it refuses moves.
-  double reply_delay = 0.01;  ///< Time until it answers, s.
+  bool obeys = true;          ///< Whether the head executes the moves that it accepts.
+  bool is_on = true;          ///< Whether the head is switched on. If not, it refuses moves.
+  double reply_delay = 0.01;  ///< Time from a request to the answer, s.
 };
 
-/// Simulated VISCA heads on one link: a chain on a serial line, or one at a network address.
+/// Simulated VISCA heads on one link: a chain of heads on a serial line, or one head at a network address.
 class ViscaDevice : public ServedDevice {
  public:
-  /// Adds nothing to the link by itself: see add().
+  /// Makes a device without heads: see add().
   explicit ViscaDevice(ViscaFraming framing) : framing_(framing) {}
 
-  /// Adds a head to the end of the chain, at most 7. Returns its index. Heads without a serial line have
-  /// address 1, others have none before they are numbered. `motors` may be null: steady ones.
+  /// Adds a head to the end of the chain, at most 7. Returns its index. Heads at a network address have
+  /// address 1. Heads on a serial line have no address until they are numbered. `motors` null:
+  /// SteadyViscaMotors.
   std::size_t add(const ViscaHeadModel& model, std::unique_ptr<ViscaMotors> motors = nullptr);
 
   std::vector<std::string> receive(std::string_view bytes, double now) override;
   std::vector<std::string> advance(double now) override;
 
-  /// Returns the properties of the head with this index; they may be changed.
+  /// Returns the properties of the head with this index, which the caller may change.
   [[nodiscard]] ViscaHeadModel& model(std::size_t head) { return heads_[head].model; }
   /// Returns the motors of the head with this index.
   [[nodiscard]] ViscaMotors& motors(std::size_t head) { return *heads_[head].motors; }
@@ -93,9 +95,10 @@ class ViscaDevice : public ServedDevice {
   [[nodiscard]] ViscaCounts counts(std::size_t head, double now);
   /// Returns whether an axis of a head moves at time `now`.
   [[nodiscard]] bool is_moving(std::size_t head, double now);
-  /// Ends all commands of a head with an error, as an alarm of its motors does.
+  /// Ends all commands of a head with an error, as an alarm of its motors would.
   void fail(std::size_t head, ViscaError code, double now);
-  /// Forgets addresses, commands and sequence numbers and stops, as heads do that are switched off and on.
+  /// Stops all heads and clears addresses, commands and sequence numbers, as if they were switched off and
+  /// on.
   void restart(double now);
   /// Returns the number of executed moves.
   [[nodiscard]] std::size_t moves() const { return moves_; }

@@ -14,21 +14,21 @@
 
 namespace flexura {
 
-/// A pan/tilt/zoom head with VISCA commands.
+/// A pan/tilt/zoom head that is moved by VISCA commands.
 ///
-/// Every move is verified: a reading is `moving` until the head has reported the target's position. A head
-/// that stands elsewhere for `stall_time` is commanded again. If that does not help, readings are refused
-/// with a message, until the next command or halt.
+/// Every move is verified: a reading is `moving` until the head has reported the target's position. If the
+/// head rests elsewhere for `stall_time`, the command is repeated. If the repetition has no effect, read()
+/// returns a fault until the next command or halt.
 ///
-/// command() and read() may be called from several threads, and halt() at any time. A command that a halt
-/// interrupts is refused.
+/// command() and read() may be called from several threads, and halt() at any time. A command that is
+/// interrupted by a halt returns a fault.
 class ViscaHead : public HeadPort {
  public:
   /// Throws std::invalid_argument for an invalid configuration. Heads of a chain share `bus`.
   ViscaHead(std::shared_ptr<ViscaBus> bus, const ViscaConfig& config);
 
-  /// Checks that the head reports positions as configured. Moves nothing. Returns its version, of zeros if it
-  /// does not report one.
+  /// Checks that the head reports positions with the configured numbers of digits. The head does not move.
+  /// Returns the version of the head, or zeros if the head does not report a version.
   [[nodiscard]] Outcome<ViscaVersion> start();
 
   CommandOutcome command(const HeadState& state) override;

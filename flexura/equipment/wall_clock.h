@@ -6,14 +6,14 @@
 
 namespace flexura {
 
-/// Real time, s, since the clock was made. Changes of the date do not affect it.
+/// Real time since the construction of the clock, s. Changes of the system's date do not affect it.
 class WallClock : public ClockPort {
  public:
-  /// While wait_until() waits, it calls `while_waiting` every `interval` s or more often, > 0.
+  /// While wait_until() waits, it calls `while_waiting` at least every `interval` s, > 0.
   explicit WallClock(std::function<void()> while_waiting = {}, double interval = 0.02);
 
   [[nodiscard]] double now() const override;
-  /// Returns the steady_seconds() at which this clock shows 0.
+  /// Returns the time on the clock steady_seconds() at which this clock shows 0, s.
   [[nodiscard]] double start() const { return start_; }
   void wait_until(double time) override;
 
@@ -23,7 +23,7 @@ class WallClock : public ClockPort {
   double interval_;
 };
 
-/// Returns the time since an arbitrary instant, s, the same for all threads.
+/// Returns the time since an arbitrary instant, s. The instant is the same for all threads.
 [[nodiscard]] double steady_seconds();
 
 }  // namespace flexura

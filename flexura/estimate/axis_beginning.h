@@ -14,9 +14,10 @@ struct Aside {
 };
 
 /// Returns the distance of a pixel from the visible backbone at the backbone's beginning in `seen`. The curve
-/// is extended beyond its first point by a parabola through the first 40 px, or eight points. Returns
-/// std::nullopt if the visible curve is shorter than this part, or if this part turns by more than 0.5 rad.
-/// Also returns std::nullopt unless the pixel is between 15 px before and 5 px behind the beginning.
+/// is extended beyond its first point by a parabola. The parabola is fitted to the first part of the curve,
+/// which has a length of at least 40 px and at least eight points. Returns std::nullopt if the visible curve
+/// is shorter than this part, or if this part turns by more than 0.5 rad. Also returns std::nullopt unless
+/// the pixel is between 15 px before and 5 px behind the beginning.
 [[nodiscard]] std::optional<Aside> aside_of_beginning(const Observation& seen, const Eigen::Vector2d& pixel);
 
 }  // namespace flexura

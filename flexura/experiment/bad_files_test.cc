@@ -175,7 +175,7 @@ TEST(BadFiles, SeveralErrorsAreReportedAtOnceInOneLineEach) {
       "x.toml:4:10: arm.section[0].length = -1: expected a number from 1e-06 m to 1000000 m\n"
       "x.toml:5:10: arm.section[0].radius = 0: expected a number from 1e-06 m to 1000000 m\n"
       "x.toml:6:1: arm.section[1].length: missing: expected a number from 1e-06 m to 1000000 m "
-      "(Arc length of the section's centerline at stretch 1.)");
+      "(Length of the section's backbone at stretch 1.)");
 }
 
 TEST(BadFiles, WhatTheTruthInheritsIsToldOnce) {

@@ -79,9 +79,10 @@ TEST(ArcsCalibration, LogsAndReportsItsArcsDriveCommandsAndIdealImages) {
   EXPECT_TRUE(last.ended.value_or(false));
   EXPECT_EQ(last.next, "calibrated");
   const std::string report = text_of(result, report_file_name);
-  for (const char* part : {"The arc in XOY, for camera front: sections bend by 42.00, 42.00, 36.00 deg, "
-                           "rotated by 0.00, 0.00, 0.00 deg",
-                           "; motors at ", "camera side, ideal: the arc in ZOY"})
+  for (const char* part :
+       {"The arc in the plane XOY, for camera front: sections bend by 42.00, 42.00, 36.00 deg, "
+        "in directions rotated by 0.00, 0.00, 0.00 deg",
+        "; motors at ", "camera side, ideal picture of the arc in the plane ZOY"})
     EXPECT_THAT(report, HasSubstr(part));
 }
 
@@ -96,17 +97,21 @@ TEST(EtalonLoop, RefusesKeysThatCountForNothing) {
     return problems;
   };
   const LoopRig rig = {.size = 0.5};
-  EXPECT_THAT(problems_of(etalon_rig("method = \"etalon\"\nzooms = [1, 2]\n"
-                                     "loop = { turn_deg = 1, slide = 0.1, zoom_step = 0.1, arc_deg = 100 }\n",
-                                     rig)),
-              ::testing::ElementsAre(
-                  "task[0].loop.turn: applies only to etalon-paper: expected this key to be absent",
-                  "task[0].loop.slide: applies only to etalon-paper: expected this key to be absent",
-                  "task[0].loop.zoom_step: applies only to etalon-paper: expected this key to be absent",
-                  "task[0].loop.arc: applies only to arcs and arcs-paper: expected this key to be absent",
-                  "task[0].zooms: applies only to bundle: expected this key to be absent"));
+  EXPECT_THAT(
+      problems_of(etalon_rig("method = \"etalon\"\nzooms = [1, 2]\n"
+                             "loop = { turn_deg = 1, slide = 0.1, zoom_step = 0.1, arc_deg = 100 }\n",
+                             rig)),
+      ::testing::ElementsAre(
+          "task[0].loop.turn: this key applies only to the method etalon-paper: expected it to be absent",
+          "task[0].loop.slide: this key applies only to the method etalon-paper: expected it to be absent",
+          "task[0].loop.zoom_step: this key applies only to the method etalon-paper: expected it to be "
+          "absent",
+          "task[0].loop.arc: this key applies only to the methods arcs and arcs-paper: expected it to be "
+          "absent",
+          "task[0].zooms: this key applies only to the method bundle: expected it to be absent"));
   const LoopRig arcs = arcs_cameras({WrongStart{}, WrongStart{}});
-  const std::string count = ": applies only to bundle and bundle-etalon: expected this key to be absent";
+  const std::string count =
+      ": this key applies only to the methods bundle and bundle-etalon: expected it to be absent";
   EXPECT_THAT(
       problems_of(arcs_rig(
           "method = \"arcs\"\ncamera_prior = { focal_std = 0.2, principal_point_std = 3, zero_std = 0.1, "

@@ -212,7 +212,7 @@ TEST(BadDynamicFiles, EachGetsALineWithPlaceValueAndExpectation) {
               HasSubstr("arm.contact.stiffness = 0"));
   // The paper's arcs are of an arm that does not sag.
   EXPECT_THAT(error_of_file(moving_rod + std::string("[[task]]\nkind = \"calibrate\"\nmethod = \"arcs\"\n")),
-              HasSubstr("task[0].method: needs a model of arcs, but an elastic arm sags"));
+              HasSubstr("task[0].method: this method needs an arm model of arcs, but an elastic arm sags"));
   EXPECT_THAT(error_of_file(moving_with("model = \"dynamic\"", "model = \"dynamic\"\ntime_step = 0")),
               HasSubstr("arm.time_step"));
 }

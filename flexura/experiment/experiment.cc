@@ -22,7 +22,7 @@ const Table<Experiment>& fields_of(const Experiment*) {
   static const auto table =
       with_setup_fields(
           Table<Experiment>("Flexura experiment file",
-                            "A rig and its tasks. A file with only an [arm] table describes an arm."))
+                            "A rig and its tasks. A file that has only the table [arm] describes an arm."))
           .field(
               "task", &Experiment::task,
               {.meaning = "Tasks, in order of execution.", .count = {0, max_tasks}, .default_text = "none"})

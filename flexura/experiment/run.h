@@ -19,7 +19,7 @@ enum class RunOutcome {
   unsafe,     ///< A task would violate a limit of the arm or cause a contact; the run is simulated for
               ///< inspection.
   failed,     ///< A calibration, a servo or a dynamics task failed and ended the run.
-  cancelled,  ///< The run was cancelled (Progress::cancelled). The log ends with the last played step.
+  cancelled,  ///< The run was cancelled (Progress::cancelled). The log ends with the last executed step.
 };
 
 /// Returns "done", "unsafe", "failed" or "cancelled", the names used in summaries.
@@ -39,8 +39,8 @@ struct RunResult {
 /// the experiment as run, the log, the summary, the report and its figures (docs/results.md). Equal
 /// experiments write equal bytes, with or without a watcher. A cancelled run writes its results so far,
 /// except the report, its figures and tables. `make_rig` makes the rig if cameras are recorded or a task
-/// needs a rig. By default it makes the file's equipment, or a simulated rig. Throws InputError if there is
-/// no task, and std::runtime_error if a file cannot be written.
+/// needs a rig. By default `make_rig` makes the rig of the file's equipment, or a simulated rig. Throws
+/// InputError if there is no task, and std::runtime_error if a file cannot be written.
 [[nodiscard]] RunResult run_experiment(const Experiment& as_read, const std::filesystem::path& folder,
                                        Progress& progress, RunWatcher* watcher = nullptr,
                                        const RigFactory& make_rig = rig_of);

@@ -42,14 +42,15 @@ using TaskRunners = std::vector<std::unique_ptr<TaskRunner>>;
 /// runners.
 [[nodiscard]] TaskRunners task_runners(const Experiment& experiment);
 
-/// Motions of completed tasks, by the tasks' numbers. It has only tasks whose motion is determined during the
-/// run or by a simulation (TaskMotionSource).
+/// Motions of completed tasks, by the tasks' numbers. The map has only tasks whose motion is determined
+/// during the run or by a simulation (TaskMotionSource).
 using DoneTasks = std::map<std::size_t, MotionPtr>;
 
 /// Planned motion of an experiment: the arm's state at every time, computed before anything moves.
 class Schedule {
  public:
-  /// Schedule before the run. For tasks whose motion is unknown, it contains the largest possible motion.
+  /// Schedule before the run. For tasks whose motion is unknown, the schedule contains the largest possible
+  /// motion.
   explicit Schedule(const Experiment& experiment);
   /// `tasks`: runners of the experiment's tasks. For tasks whose motion is neither known nor in `done`, the
   /// schedule contains the largest possible motion.

@@ -31,7 +31,7 @@ class SpaceRecord {
   /// Adds the true arm and the commanded arm at `time`, s. Times must increase.
   void true_arm(double time, const Backbone& truth, const Backbone& commanded);
 
-  /// Returns the record. It omits the true arm if it never differs visibly from the commanded arm.
+  /// Returns the record. The true arm is omitted if it never differs visibly from the commanded arm.
   [[nodiscard]] ReportSpace space() &&;
 
  private:

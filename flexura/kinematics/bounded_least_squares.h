@@ -51,9 +51,9 @@ struct BoundedDescent {
   /// Afterwards, r and J are the residuals and the Jacobian at the resulting x.
   Descent descend(const DescentLimits& limits, Eigen::VectorXd& x);
   /// Descends by spectral projected gradients: projected Barzilai-Borwein steps with a nonmonotone line
-  /// search (Birgin, Martinez, Raydan 2000). It is meant for minima with a large residual, such as the
-  /// nearest pose to an unreachable target. For these, the Gauss-Newton approximation of the curvature has an
-  /// error proportional to the residual.
+  /// search (Birgin, Martinez, Raydan 2000). This method is meant for minima with a large residual, such as
+  /// the nearest pose to an unreachable target. For these, the Gauss-Newton approximation of the curvature
+  /// has an error proportional to the residual.
   Descent descend_gradient(const DescentLimits& limits, Eigen::VectorXd& x);
 
   /// Sets `trial` to x plus the step that minimizes |J step + r|^2 + damping |step|^2 within the bounds.

@@ -10,9 +10,10 @@
 namespace flexura {
 
 /// Residuals of the condition that the backbone follows a polyline, as functions of the vector x of
-/// ArmVariables. They compare points at evenly spaced fractions of the backbone's length with points at equal
-/// fractions of the polyline's length. Each difference (x, y, z in base axes) is divided by `length` and by
-/// the square root of the number of points. Hence |r|^2 is the mean square distance in units of `length`.
+/// ArmVariables. The residuals compare points at evenly spaced fractions of the backbone's length with points
+/// at equal fractions of the polyline's length. Each difference (x, y, z in base axes) is divided by `length`
+/// and by the square root of the number of points. Hence |r|^2 is the mean square distance in units of
+/// `length`.
 class CurveProblem final : public BoundedProblem {
  public:
   /// `points`: vertices of the polyline in the base's frame, m. There must be at least two, not all equal.

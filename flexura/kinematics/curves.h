@@ -45,8 +45,8 @@ struct CubicBezier {
 /// (catmull_rom), or one cubic per section (tangent_bezier).
 enum class CurveKind : std::uint8_t { arcs, catmull_rom, bezier };
 
-/// Returns the cubics of a drawn curve, in W, m, from base to tip. It is empty for `arcs`, which are drawn
-/// directly. `tension` is the parameter of catmull_rom().
+/// Returns the cubics of a drawn curve, in W, m, from base to tip. The list is empty for `arcs`, which are
+/// drawn directly. `tension` is the parameter of catmull_rom().
 [[nodiscard]] std::vector<CubicBezier> drawn_curve(const Backbone& backbone, CurveKind kind, double tension);
 
 /// Deviation of a drawn curve from the backbone.

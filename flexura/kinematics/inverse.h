@@ -74,9 +74,10 @@ enum class InverseOutcome {
 /// Result of inverse kinematics: a state and, if it is not a solution, the reason.
 struct InverseResult {
   InverseOutcome outcome = InverseOutcome::no_convergence;
-  bool is_proven = false;  ///< Whether it is proven that no state within the limits reaches the target.
-  ArmState state;          ///< The solution, or the nearest state found. It is within the limits.
-  Eigen::Vector3d tip;     ///< p_WT of `state`, m.
+  bool is_proven =
+      false;            ///< Whether the search has proven that no state within the limits reaches the target.
+  ArmState state;       ///< The solution, or the nearest state found. This state is within the limits.
+  Eigen::Vector3d tip;  ///< p_WT of `state`, m.
   /// Distance of the tip from the target, m; for a curve, the largest distance along the arm.
   double position_error = 0.0;
   /// Angle between the tip's direction or rotation and that of the target, rad; 0 for targets without either.
@@ -111,8 +112,8 @@ struct InverseResult {
 /// are none. If the target does not determine all degrees of freedom, each solution is moved to a local
 /// minimum of the objective (default: least_bending), and each local minimum is one solution. Two solutions
 /// count as equal if their backbones differ by less than 1e-4 of the arm's length everywhere. For a target
-/// that is symmetric about the base's z axis, one solution represents all its rotations about this axis. Its
-/// first bent section bends towards the base's x.
+/// that is symmetric about the base's z axis, one solution represents all its rotations about this axis. The
+/// first bent section of this solution bends towards the base's x.
 [[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
                                                                const InverseConfig& config = {});
 /// Returns the distinct commands that reach a target. Two commands count as equal if an arm of single-arc

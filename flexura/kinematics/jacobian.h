@@ -10,14 +10,14 @@
 namespace flexura {
 
 /// Jacobian of a backbone point P, 6 x 3n for an arm of n sections. Columns 3i, 3i + 1 and 3i + 2 are twists
-/// [v; w] of P relative to W, expressed in W. They are per unit rate of bend_x, bend_y (rad/s) and stretch
-/// (1/s) of section i. The first three rows are the velocity v of P, m/s. The last three rows are the angular
-/// velocity w of the backbone's frame at P, rad/s.
+/// [v; w] of P relative to W, expressed in W. These twists are per unit rate of bend_x, bend_y (rad/s) and
+/// stretch (1/s) of section i. The first three rows are the velocity v of P, m/s. The last three rows are the
+/// angular velocity w of the backbone's frame at P, rad/s.
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// Analytic Jacobians of any number of backbone points in one state of an arm. It allocates no memory after
-/// the constructor. P is a material point, which moves with stretch. Columns of sections beyond P's section
-/// are zero. The Jacobians are smooth for straight sections.
+/// Analytic Jacobians of any number of backbone points in one state of an arm. Only the constructor allocates
+/// memory. P is a material point, which moves with stretch. Columns of sections beyond P's section are zero.
+/// The Jacobians are smooth for straight sections.
 class BackboneJacobian {
  public:
   /// Twists [v; w] per unit rate of bend_x, bend_y and stretch.

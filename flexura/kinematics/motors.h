@@ -20,9 +20,9 @@ namespace flexura {
 /// std::invalid_argument unless there is one position per axis.
 [[nodiscard]] TendonDisplacements displacements_at(const Drive& drive, std::span<const double> positions);
 
-/// Computes the motor positions to command so that tendons follow target displacements. It rounds to the
-/// nearest microstep, and compensates the whole backlash as soon as a tendon reverses. Thus each tendon
-/// remains within half a microstep of its target.
+/// Computes the motor positions to command so that tendons follow target displacements. The positions are
+/// rounded to the nearest microstep, and compensate the whole backlash as soon as a tendon reverses. Thus
+/// each tendon remains within half a microstep of its target.
 class MotorCommander {
  public:
   /// Starts at the displacements `start`, with the backlash compensated for pulling in. Throws

@@ -3,15 +3,15 @@
 namespace flexura {
 
 /// Time profile of a motion between two points: the completed fraction of the distance, from 0 at time 0 to 1
-/// at `duration`. Every profile is symmetric in time. Its rate never decreases before the middle of the
-/// duration, and never increases after it.
+/// at `duration`. Every profile is symmetric in time. The rate of a profile never decreases before the middle
+/// of the duration, and never increases after it.
 class Profile {
  public:
   /// Returns a profile with a constant rate. This function and the following ones throw std::invalid_argument
   /// unless the duration, s, is above 0.
   [[nodiscard]] static Profile linear(double duration);
-  /// Returns the minimum-jerk profile 10 x^3 - 15 x^4 + 6 x^5, with x = t / duration. It has zero rate and
-  /// acceleration at both ends, and the least integral of squared jerk.
+  /// Returns the minimum-jerk profile 10 x^3 - 15 x^4 + 6 x^5, with x = t / duration. This profile has zero
+  /// rate and acceleration at both ends, and the least integral of squared jerk.
   [[nodiscard]] static Profile minimum_jerk(double duration);
   /// Returns the fastest profile over `distance` > 0 with |rate| <= max_rate and |acceleration| <=
   /// max_acceleration. Both limits are above 0, in units of distance per s and per s^2. The profile has a

@@ -21,7 +21,7 @@ namespace flexura {
 [[nodiscard]] double least_angle(const Arm& arm, const Eigen::Matrix3d& R_BT);
 
 /// Returns a lower bound, m, on the distance of the tip from the origin of `X_BT`, for a tip that points
-/// along the z axis of `X_BT`. It applies least_distance() from both ends of the arm.
+/// along the z axis of `X_BT`. This function applies least_distance() from both ends of the arm.
 [[nodiscard]] double least_distance_along(const Arm& arm, const Pose& X_BT);
 
 }  // namespace flexura

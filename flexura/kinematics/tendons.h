@@ -33,14 +33,14 @@ struct TendonFit {
   /// pulls against the others. A tendon with a negative residual is slack. The residuals are zero if the
   /// displacements are consistent.
   TendonDisplacements residual;
-  /// Whether a fit was found. It can be false only with guide disks; then `state` is the last iterate.
+  /// Whether a fit was found. This can be false only with guide disks; then `state` is the last iterate.
   bool converged = true;
 };
 
 /// Returns the state for tendon displacements: bends, and stretches of stretchable sections. The fit is exact
-/// if an exactly fitting state exists. Otherwise it is a least-squares fit, section by section from the base.
-/// In a continuous channel, this equals the least-squares fit to all tendons. bend_y of planar arms is 0. If
-/// the tendons do not determine a section, the result is the solution nearest to straight.
+/// if an exactly fitting state exists. Otherwise the fit is a least-squares fit, section by section from the
+/// base. In a continuous channel, this equals the least-squares fit to all tendons. bend_y of planar arms is
+/// 0. If the tendons do not determine a section, the result is the solution nearest to straight.
 [[nodiscard]] TendonFit fit_state(const Arm& arm, const Drive& drive,
                                   const TendonDisplacements& displacements);
 

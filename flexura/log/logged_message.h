@@ -9,8 +9,8 @@
 
 namespace flexura {
 
-/// A message for a log. It can have any type with a table of fields. This object refers to the message and
-/// the topic, so it is valid only during one call.
+/// A message for a log. A message can have any type with a table of fields. This object refers to the message
+/// and the topic, so it is valid only during one call.
 class LoggedMessage {
  public:
   /// `time`: time of the message in the log, s since the experiment's start.

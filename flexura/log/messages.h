@@ -48,8 +48,8 @@ struct PoseMessage {
   QuaternionMessage orientation;  ///< Unit quaternion; w is last.
 };
 
-/// foxglove.PosesInFrame, on /arm/poses (commanded) and /arm/truth (true): poses in the world. They are the
-/// base frame of each section (in the truth, of each arc) and, as the last pose, the tip.
+/// foxglove.PosesInFrame, on /arm/poses (commanded) and /arm/truth (true): poses in the world. The poses are
+/// the base frame of each section (in the truth, of each arc) and, as the last pose, the tip.
 struct PosesMessage {
   TimeMessage timestamp;
   std::string frame_id;  ///< "world"
@@ -116,8 +116,8 @@ struct ContactMessage {
   std::optional<double> normal_force = {};  ///< Normal force, N.
   std::optional<bool> sticks = {};          ///< Whether the surfaces do not slide along each other.
 };
-/// flexura.Contacts, on /arm/contacts, logged with the true arm if that is an elastic rod with inertia. It is
-/// logged while the arm touches something, and once afterwards.
+/// flexura.Contacts, on /arm/contacts, logged with the true arm if that is an elastic rod with inertia. The
+/// message is logged while the arm touches something, and once afterwards.
 struct ContactsMessage {
   double time = 0;  ///< In s.
   std::vector<ContactMessage> contacts;

@@ -77,8 +77,8 @@ class PivotedCholesky {
   bool is_finite_ = false;
 };
 
-/// Returns the singular values in descending order. Their number is the smaller of the numbers of rows and
-/// columns.
+/// Returns the singular values in descending order. The number of singular values is the smaller of the
+/// numbers of rows and columns.
 [[nodiscard]] Eigen::VectorXd singular_values(const Eigen::MatrixXd& A);
 
 /// Returns the minimum-norm least-squares solution: the x of smallest norm that minimizes |A x - b|.

@@ -11,7 +11,7 @@ using VectorFunction = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
 /// A Jacobian computed by finite differences, with its estimated error.
 struct NumericalJacobian {
   Eigen::MatrixXd value;  ///< m x n.
-  Eigen::MatrixXd error;  ///< m x n: estimated absolute error of each element.
+  Eigen::MatrixXd error;  ///< Estimated absolute error of each element of `value`, m x n.
 };
 
 /// Returns the Jacobian of f at x, computed by central differences and Richardson extrapolation to step 0

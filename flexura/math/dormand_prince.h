@@ -39,8 +39,8 @@ class DormandPrince {
     int steps = 0, taken_back = 0;  ///< Numbers of accepted steps, and of steps rejected for their error.
   };
 
-  /// Advances from (t, y) to exactly the time `until` >= t. f(t, y, slope) writes dy/dt into `slope`. It
-  /// calls go_on() before every step. If go_on() returns false, the advance stops.
+  /// Advances from (t, y) to exactly the time `until` >= t. f(t, y, slope) writes dy/dt into `slope`. The
+  /// solver calls go_on() before every step. If go_on() returns false, the advance stops.
   template <class Function, class GoOn = bool (*)()>
   Progress advance(Function&& f, double& t, Eigen::VectorXd& y, double until, GoOn go_on = always) {
     Progress progress;

@@ -21,8 +21,9 @@ struct Damping {
   double rise = 10;     ///< Factor on the damping after a rejected step. Each further consecutive rejection
                         ///< multiplies the factor by `growth`.
   double growth = 1;
-  /// Function that returns the damping after an accepted step. Its parameters are the previous damping and
-  /// the ratio of actual to predicted decrease of the cost (-1 if no decrease was predicted).
+  /// Function that returns the damping after an accepted step. The parameters of this function are the
+  /// previous damping and the ratio of actual to predicted decrease of the cost (-1 if no decrease was
+  /// predicted).
   double (*eased)(double damping, double ratio) = nullptr;
 };
 
@@ -37,7 +38,7 @@ enum class DescentEnd {
 /// most `most_tries` steps.
 ///
 /// - `try_step(damping)` computes a trial step and returns its TriedStep.
-/// - `keep(step, cost)` accepts the last trial step and linearises the problem at the new point. It sets
+/// - `keep(step, cost)` accepts the last trial step and linearises the problem at the new point. `keep` sets
 ///   `cost` to the cost that the next step must decrease, and returns true if this was the last step.
 /// - `leave(step, cost)` returns true if smaller steps need not be tried after a rejected step.
 template <class Try, class Keep, class Leave>

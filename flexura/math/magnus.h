@@ -11,8 +11,8 @@ namespace flexura {
 [[nodiscard]] std::array<double, 3> magnus_points();
 
 /// Returns three moments of a quantity over an interval of length h, from the quantity's values at the three
-/// Gauss points. The moments are the integral, and the slope and curvature terms times h. They are linear in
-/// the values.
+/// Gauss points. The moments are the integral, and the slope and curvature terms times h. The moments are
+/// linear in the values.
 template <typename Value>
 [[nodiscard]] std::array<Value, 3> magnus_moments(double h, const Value& first, const Value& second,
                                                   const Value& third) {
@@ -24,7 +24,7 @@ template <typename Value>
 /// A step of the Magnus expansion (S. Blanes, F. Casas, J. A. Oteo, J. Ros, "The Magnus expansion and some of
 /// its applications", 2009, sec. 5.5.1). Let X(s) be the pose with X' = X hat(x(s)) and X(0) = 1, where x is
 /// a strain. The step computes the twist T with X(h) = exp(T), accurate to the sixth power of h and exact for
-/// a constant x. Its input is the moments a of x (magnus_moments).
+/// a constant x. The input of the step is the moments a of x (magnus_moments).
 class MagnusStep {
  public:
   using Moments = std::array<Vector6d, 3>;

@@ -9,7 +9,7 @@ namespace flexura {
 /// A set of vectors x: |x[at ... at + size - 1] - center| <= radius.
 struct BallLimit {
   Eigen::Index at = 0;
-  Eigen::VectorXd center;  ///< Its size is the number of limited entries.
+  Eigen::VectorXd center;  ///< The size of `center` is the number of limited entries.
   double radius = 0;       ///< >= 0
 };
 
@@ -31,7 +31,8 @@ struct ConvexLimits {
 /// Settings of nearest_point().
 struct NearestPointConfig {
   int most_rounds = 400;  ///< Largest number of projections on each set.
-  /// The search ends if x changes by less than this in a round. It is also the largest allowed excess().
+  /// Tolerance: the search ends if x changes by less than this value in a round. The tolerance is also the
+  /// largest allowed excess().
   double tolerance = 1e-7;
 };
 

@@ -25,7 +25,7 @@ struct Quadrature {
 [[nodiscard]] double legendre_slope(int degree, double x);
 
 /// Returns the integral of f over [a, b], with `rule` applied to each of `panels` >= 1 equal parts. The
-/// function f takes a double. It returns a double, or an Eigen vector or matrix by value (not an Eigen
+/// function f takes a double. f returns a double, or an Eigen vector or matrix by value (not an Eigen
 /// expression).
 template <typename Function>
 [[nodiscard]] auto integrate(const Quadrature& rule, Function&& f, double a, double b, int panels = 1) {

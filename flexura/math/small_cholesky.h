@@ -5,10 +5,10 @@
 
 namespace flexura {
 
-/// Solves A x = b for a symmetric positive definite A, of which only the lower triangle is used. It is meant
-/// for inner loops with few unknowns: the size n is fixed, and no memory is allocated. The result is not
-/// finite if A is not positive definite; an infinite diagonal element counts as positive definite. (Eigen's
-/// LLT would add nearly two seconds of compile time for each fixed size.)
+/// Solves A x = b for a symmetric positive definite A, of which only the lower triangle is used. This
+/// function is meant for inner loops with few unknowns: the size n is fixed, and no memory is allocated. The
+/// result is not finite if A is not positive definite; an infinite diagonal element counts as positive
+/// definite. (Eigen's LLT would add nearly two seconds of compile time for each fixed size.)
 template <int n>
 [[nodiscard]] Eigen::Vector<double, n> solve_definite(Eigen::Matrix<double, n, n> A,
                                                       Eigen::Vector<double, n> b) {

@@ -41,7 +41,8 @@ ArcFit::Columns ArcFit::masked(Columns columns, std::size_t arc) const {
 // Sets the arcs one after another. A Jacobian of the whole arm at a place has columns of all arcs before it.
 void ArcFit::stand(const Arm& arm, const ArmState& state) {
   require_fit(arm, state);
-  if (state.bends.size() != arcs_.size()) throw std::invalid_argument("a fit of another number of arcs");
+  if (state.bends.size() != arcs_.size())
+    throw std::invalid_argument("the state and the fit have different numbers of arcs");
   Pose X_WS = arm.X_WB;
   for (std::size_t k = 0; k < arcs_.size(); ++k) {
     single_[k].X_WB = X_WS;

@@ -13,23 +13,23 @@
 
 namespace flexura {
 
-/// Linear least squares fit of an arm's shape to places along it. It finds the change of the arm's variables
-/// that moves these places by given displacements, with the least sum of squared errors. An arc affects the
-/// arcs after it only by the twist of its end. So the normal equations are eliminated arc by arc from the tip
-/// on, and work and memory grow linearly with the number of arcs. The linear-quadratic regulator is solved in
-/// the same way (the Riccati recursion; A. Bryson, Y. Ho, Applied Optimal Control, 1975, sec. 2.3 and 5.3).
+/// Linear least squares fit of an arm's shape to places along the arm. The fit finds the change of the arm's
+/// variables that moves these places by given displacements, with the least sum of squared errors. An arc
+/// affects the arcs distal of it only by the twist of its end. So the normal equations are eliminated arc by
+/// arc from the tip, and time and memory are linear in the number of arcs. This is the Riccati recursion of
+/// linear-quadratic regulators (A. Bryson, Y. Ho, Applied Optimal Control, 1975, sec. 2.3 and 5.3).
 class ArcFit {
  public:
-  /// `places` are on the arm of `variables`, in the order of their arcs.
+  /// `places` are places on the arm of `variables`, in the order of their arcs.
   ArcFit(const ArmVariables& variables, std::vector<MaterialPoint> places);
 
   /// Linearises at a state. Throws std::invalid_argument if the state does not fit the arm.
   void set(const Arm& arm, const ArmState& state);
   /// Returns the position of a place in the state, in W, m.
   [[nodiscard]] Eigen::Vector3d position(std::size_t place) const { return positions_[place]; }
-  /// Returns the best change of the variables (ArmVariables) for displacements of the places in W, m:
-  /// variables x columns. `moved` has 3 rows per place. If `reached` is not null, it receives the
-  /// displacements of that change, of the size of `moved`.
+  /// Returns the best change of the variables (ArmVariables) for the displacements `moved` of the places in
+  /// W, m. `moved` has 3 rows per place, and one column per problem. The result is variables x columns. If
+  /// `reached` is not null, it is set to the displacements that the best change causes.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& moved, Eigen::MatrixXd* reached = nullptr) const;
 
  private:

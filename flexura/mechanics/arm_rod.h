@@ -28,12 +28,12 @@ namespace flexura {
 [[nodiscard]] RodLoads loads_of(const ArmConfig& arm);
 
 /// Returns how far each tendon of a rod is pulled in, m, if its sections are arcs bent and stretched as in
-/// `state`. Simulated arms use this function to convert commanded bends into displacements. Also for a bend
-/// so strong that a tendon would pass the centre of the arc, the pulled-in length increases with the bend. No
-/// rod bends so far. Throws std::invalid_argument if `state` has another number of sections.
+/// `state`. Simulated arms use this function to convert commanded bends into displacements. The pulled-in
+/// length increases with the bend even if the bend is so large that a tendon would pass the arc's centre.
+/// Real rods cannot bend so far. Throws std::invalid_argument if `state` has another number of sections.
 [[nodiscard]] TendonDisplacements arc_displacements(const Rod& rod, const ArmState& state);
 /// Returns the derivatives of arc_displacements with respect to the (bend_x, bend_y, stretch) of each
-/// section. There is one row per tendon and 3 columns per section. Errors as arc_displacements.
+/// section. There is one row per tendon and 3 columns per section. Throws as arc_displacements.
 [[nodiscard]] Eigen::MatrixXd arc_displacement_slopes(const Rod& rod, const ArmState& state);
 
 /// Returns how far a rod's tendons are pulled in, m, if each pulls with `tension` N without other loads.
@@ -43,9 +43,9 @@ namespace flexura {
 /// Default number of arcs of a section of an arm that is modelled as a rod.
 inline constexpr std::size_t arcs_of_rod_section = 3;
 
-/// Returns the model of an arm and its drive that tasks use. In it, a section is one arc or several
-/// (Section::bend_profile). If the arm's model is static or dynamic, shapes are those of the rod's
-/// equilibrium under commands (RodResponse). Errors as RodResponse.
+/// Returns the model of an arm and its drive that tasks use. In this model, a section consists of one or
+/// several arcs (Section::bend_profile). If the arm's model is static or dynamic, shapes are those of the
+/// rod's equilibrium under commands (RodResponse). Throws as RodResponse.
 [[nodiscard]] ArmModel arm_model_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
 }  // namespace flexura

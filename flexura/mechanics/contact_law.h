@@ -25,11 +25,11 @@ struct ContactPress {
   double force = 0, by_depth = 0, by_rate = 0;
 };
 /// Returns the normal force of K. H. Hunt and F. R. E. Crossley (1975), linear in the depth: k depth (1 +
-/// damping rate). It is smooth at first contact and where it would become attractive. `rate`: rate of the
-/// depth, m/s.
+/// damping rate). This force is smooth at first contact, and where it would become attractive. `rate`: rate
+/// of the depth, m/s.
 [[nodiscard]] ContactPress press(const ContactLaw& law, double depth, double rate);
 
-/// Contact of a ball around a point of the rod with a body.
+/// Contact of a body with a ball, whose centre is a point of the rod.
 struct Touch {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius = 0;
@@ -41,7 +41,7 @@ struct Touch {
 /// Force and state of a contact between ball and body.
 struct TouchForce {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< Deepest point of the ball's surface in the body, m.
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the ball, N.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< Force on the ball, N.
   /// Tangential velocity of the ball's surface relative to the body's, m/s.
   Eigen::Vector3d slip = Eigen::Vector3d::Zero();
   double depth = 0;         ///< m
@@ -66,12 +66,12 @@ struct TouchChange {
 /// Returns the derivative of the contact force with respect to the variables of `change`.
 [[nodiscard]] TouchChange::Rows force_change(const ContactLaw& law, const Touch& touch, const TouchForce& at,
                                              const TouchChange& change);
-/// Positive semidefinite part of a contact's derivative with respect to the motion of the touching point:
-/// spring and damper along the normal, friction across; symmetric.
+/// Positive semidefinite, symmetric part of the derivative of a contact force with respect to the motion of
+/// the contact point. A TouchHold consists of spring and damper along the normal, and friction across.
 struct TouchHold {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero(), damping = Eigen::Matrix3d::Zero();
 };
-/// Returns the TouchHold of a contact with the force `at`.
+/// Returns the stiffness and damping (TouchHold) of a contact with the force `at`.
 [[nodiscard]] TouchHold hold_of(const ContactLaw& law, const Touch& touch, const TouchForce& at);
 
 /// Returns the force on the ball, for a body at rest. Sets `pull` to the wrench of this force and its

@@ -23,7 +23,7 @@ Eigen::Vector<double, static_cast<int>(n)> finite(const std::array<double, n>& f
                                                   const char* kind) {
   Eigen::Vector<double, static_cast<int>(n)> result;
   for (std::size_t i = 0; i < n; ++i) result[static_cast<Eigen::Index>(i)] = from[i];
-  if (!result.allFinite()) refuse(name, kind, "a number that is not finite");
+  if (!result.allFinite()) refuse(name, kind, "all numbers must be finite");
   return result;
 }
 
@@ -46,11 +46,11 @@ Eigen::Vector3d beyond_box(const Eigen::Vector3d& p, const Eigen::Vector3d& half
 
 ContactShape::ContactShape(const ObstacleConfig& obstacle, const Pose& X_BW) {
   if (!X_BW.rotation.allFinite() || !X_BW.position.allFinite())
-    throw std::invalid_argument("obstacles: a pose of the base that is not finite");
+    throw std::invalid_argument("obstacles: the pose of the base must be finite");
   if (const auto* plane = std::get_if<PlaneConfig>(&obstacle)) {
     const Eigen::Vector3d point = finite(plane->point, plane->name, "plane");
     const Eigen::Vector3d normal = finite(plane->normal, plane->name, "plane");
-    if (!(normal.stableNorm() > 0)) refuse(plane->name, "plane", "a normal without direction");
+    if (!(normal.stableNorm() > 0)) refuse(plane->name, "plane", "the normal must not be zero");
     shape_ = Plane{.point = X_BW * point, .normal = X_BW.rotation * normal.stableNormalized()};
   } else if (const auto* sphere = std::get_if<SphereConfig>(&obstacle)) {
     const Eigen::Vector3d center = finite(sphere->center, sphere->name, "sphere");

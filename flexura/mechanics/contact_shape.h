@@ -25,12 +25,12 @@ class ContactShape {
   /// not finite, a size that is not positive, or a normal or rotation of zero norm.
   ContactShape(const ObstacleConfig& obstacle, const Pose& X_BW);
 
-  /// Returns the nearest point; finite for any finite point. If several points of the surface are nearest
+  /// Returns the nearest point of the surface; finite for any finite point. If several points are nearest
   /// (centre of a ball, axis of a capsule, diagonals of a box) it returns one of them.
   [[nodiscard]] NearestPoint nearest(const Eigen::Vector3d& p_B) const;
-  /// Returns the signed distance only.
+  /// Returns only the signed distance, m.
   [[nodiscard]] double distance(const Eigen::Vector3d& p_B) const;
-  /// Returns the length of rod, from its base on, that never has contact with the obstacle, m.
+  /// Returns the length of the part of the rod next to its base that cannot touch the obstacle, m.
   [[nodiscard]] double ignore_base() const { return ignore_base_; }
 
  private:

@@ -57,7 +57,7 @@ const char* words(DynamicsEnd end) {
     case DynamicsEnd::did_not_converge:
       break;
   }
-  return "did not converge: too long a step";
+  return "the step did not converge because it is too long";
 }
 
 RodDynamics::Work::Work(Rod rod, const RodDynamicsConfig& given, std::span<const RodPlace> places)
@@ -137,25 +137,26 @@ void RodDynamics::Work::hold(const double* before, double time) {
 std::string RodDynamics::Work::input_problem(const TendonInput& tendons, const RodLoads& loads) const {
   const std::size_t count = chain.tendons();
   if (!tendons.tensions.empty() && !tendons.displacements.empty())
-    return "tensions and displacements: expected one of them";
+    return "both tensions and displacements are given: expected only one of them";
   const auto list_problem = [&](const char* name, const std::vector<double>& list) -> std::string {
     if (list.empty()) return "";
     if (list.size() != count)
-      return fmt::format("{} {} given: expected {}, one a tendon", list.size(), name, count);
-    return every_finite(list) ? "" : fmt::format("{} that are not finite", name);
+      return fmt::format("{} {} given: expected {}, one per tendon", list.size(), name, count);
+    return every_finite(list) ? "" : fmt::format("{} must be finite", name);
   };
   std::string problem = list_problem("tensions", tendons.tensions);
   if (problem.empty()) problem = list_problem("displacements", tendons.displacements);
   if (!problem.empty()) return problem;
   if (std::ranges::any_of(tendons.tensions, [](double tension) { return tension < 0; }))
-    return "a tension below 0: a tendon does not push";
-  if (!loads.gravity.allFinite() || !loads.per_length.allFinite())
-    return "gravity or a load that is not finite";
+    return "a tension is below 0, but tendons cannot push";
+  if (!loads.gravity.allFinite() || !loads.per_length.allFinite()) return "gravity and loads must be finite";
   for (const EndLoad& end : loads.ends) {
-    if (!end.force.allFinite() || !end.moment.allFinite()) return "a load that is not finite";
-    if (end.section >= chain.rod().sections.size()) return "a load at a section that the rod has not";
+    if (!end.force.allFinite() || !end.moment.allFinite()) return "loads must be finite";
+    if (end.section >= chain.rod().sections.size())
+      return "a load acts on a section that the rod does not have";
   }
-  if (!loads.springs.empty()) return "springs among the loads: of a rod in motion they are surroundings";
+  if (!loads.springs.empty())
+    return "the loads of a moving rod cannot have springs: expected them as surroundings (RodSpring)";
   return "";
 }
 
@@ -240,7 +241,7 @@ RodState RodDynamics::rest() const {
 
 RodState RodDynamics::rest(const Equilibrium& at) const {
   RodState state = rest();
-  if (at.q.size() != state.q.size()) throw std::invalid_argument("an equilibrium of another rod");
+  if (at.q.size() != state.q.size()) throw std::invalid_argument("the equilibrium belongs to another rod");
   state.q = at.q;
   state.tensions = at.tensions;
   if (!work_->rubs()) return state;
@@ -260,10 +261,10 @@ RodState RodDynamics::start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, 
                             const RodLoads& loads, const RodSlide* slide) {
   RodState state = rest();
   if (slide != nullptr && slide->friction.size() != state.friction.size())
-    throw std::invalid_argument("the friction of another rod");
+    throw std::invalid_argument("the friction belongs to another rod");
   if (q.size() != state.q.size() || v.size() != state.q.size())
     throw std::invalid_argument(fmt::format("expected {} modes and rates", state.q.size()));
-  if (!q.allFinite() || !v.allFinite()) throw std::invalid_argument("modes or rates that are not finite");
+  if (!q.allFinite() || !v.allFinite()) throw std::invalid_argument("modes and rates must be finite");
   const std::string problem = work_->input_problem(tendons, loads);
   if (!problem.empty()) throw std::invalid_argument(problem);
   state.q = q;
@@ -275,7 +276,7 @@ RodState RodDynamics::start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, 
   work_->set_forces(state, v, tendons, loads);
   if (!Work::is_of_this_world(state.momentum) || !Work::is_of_this_world(state.force) ||
       !Work::is_of_this_world(q) || !Work::is_of_this_world(v))
-    throw std::invalid_argument("a motion or forces of more than 1e100, or not finite");
+    throw std::invalid_argument("motion and forces must be finite and at most 1e100");
   return state;
 }
 
@@ -283,11 +284,11 @@ RodStep RodDynamics::step(RodState& state, const TendonInput& tendons, const Rod
   std::string problem = work_->input_problem(tendons, loads);
   if (!(h > 0) || !std::isfinite(h)) problem = "a step must be above 0 and finite";
   if (state.q.size() != work_->chain.size() || state.momentum.size() != work_->chain.size())
-    problem = "a state of another rod";
+    problem = "the state belongs to another rod";
   else if (state.friction.size() != work_->layout.pieces)
-    problem = "a state without the friction of its tendons";
+    problem = "the state lacks the friction of the tendons";
   else if (!state.q.allFinite() || !state.momentum.allFinite())
-    problem = "a state that is not finite";
+    problem = "the state must be finite";
   if (!problem.empty()) return {.end = DynamicsEnd::bad_input, .problem = problem};
   return work_->step(state, tendons, loads, h);
 }

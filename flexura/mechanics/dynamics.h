@@ -20,28 +20,29 @@ namespace flexura {
 struct RodDynamicsConfig {
   /// Factor by which one step reduces motion that is much faster than the step, from 0 to 1. With 1 there is
   /// no numerical damping: the step is the implicit midpoint rule. Values near 1 are more accurate. But if
-  /// steps are longer than periods of an undamped rod, values much above 0.1 may let its energy grow.
+  /// the steps are longer than the periods of an undamped rod, its energy may grow for values much above 0.1.
   double spectral_radius = 0.1;
-  /// Tolerance of a step's equations, rad/s. The remaining errors of the rates have at most the energy of the
-  /// whole rod turning at this rate, stiffness included.
+  /// Tolerance of the equations of a step, rad/s. The energy of the remaining errors of the rates is at most
+  /// that of the whole rod rotating at this rate.
   double tolerance = 1e-7;
   int most_iterations = 30;
   /// A step that does not converge is repeated with spectral radius 0 and halved repeatedly, until each piece
   /// converges. The shortest piece is the step divided by this number, a power of 2. 1: steps are not
   /// divided.
   int most_pieces = 65536;
-  /// Whether cross-sections have rotary inertia. Without it a rod must not twist.
+  /// Whether cross-sections have rotary inertia. Without rotary inertia a rod must not twist.
   bool rotary_inertia = true;
-  /// Stiffness of tendon friction before sliding, relative to the rod's stiffness against a pull of that
-  /// tendon. Let d be the displacement by which the tension bends the rod. A sticking tendon yields by about
-  /// d times friction coefficient times turning angle, divided by this number.
+  /// Stiffness of tendon friction before sliding, relative to the rod's stiffness against a pull of this
+  /// tendon. Let d be the tendon displacement that corresponds to the bend caused by the tension. A sticking
+  /// tendon moves elastically by about d times friction coefficient times wrap angle, divided by this number.
   double friction_grip = 100;
 };
 
 /// How a step ended.
 enum class DynamicsEnd {
   converged,
-  bad_input,         ///< A number that is not finite, a tension below 0, a list of wrong length, a step of 0.
+  bad_input,  ///< The input is invalid: a number is not finite, a tension is below 0, a list has a wrong
+              ///< length, or the step is 0.
   did_not_converge,  ///< The step is too long for the loads.
 };
 /// Returns a description for users.
@@ -49,19 +50,20 @@ enum class DynamicsEnd {
 
 struct RodStepFactor;
 
-/// State of a rod in motion: time, q, momentum and friction. The other fields are the integrator's memory.
+/// State of a moving rod: `time`, `q`, `momentum` and `friction`. The other fields are internal data of the
+/// integrator.
 struct RodState {
   double time = 0;               ///< s
   Eigen::VectorXd q;             ///< Strain modes, as in RodChain.
   Eigen::VectorXd momentum;      ///< p = M(q) v.
   std::vector<double> tensions;  ///< Tensions of the last step at the base, N.
   /// Friction forces on the tendons with friction, N. The forces along the first tendon come first, from the
-  /// base on, then those along the next tendon. They are part of the state.
+  /// base on, then those along the next tendon. Friction forces are part of the state.
   std::vector<double> friction;
 
-  Eigen::VectorXd rate;   ///< The integrator's dq/dt.
-  Eigen::VectorXd force;  ///< The integrator's dp/dt.
-  /// Rates of the last steps, newest first; initial guess of the next step.
+  Eigen::VectorXd rate;   ///< dq/dt of the integrator.
+  Eigen::VectorXd force;  ///< dp/dt of the integrator.
+  /// Rates in the last steps, newest first. The next step starts its iteration from them.
   std::array<Eigen::VectorXd, 3> middle;
   int middles = 0;           ///< Number of valid entries of `middle`.
   double step = 0;           ///< Length of the last step, s.
@@ -73,7 +75,7 @@ struct RodState {
 /// Earlier state of tendon friction, from which the present one is computed.
 struct RodSlide {
   std::vector<double> friction = {};  ///< Friction forces in the earlier state, as in RodState.
-  /// Time since the earlier state, during which tendons slid at their present rate, s.
+  /// Time since the earlier state, s. In this time tendons are assumed to slide at their present rate.
   double time = 0;
 };
 
@@ -95,33 +97,34 @@ struct RodStep {
 /// A point mass that a rod in motion picks up.
 struct RodPayload {
   RodPlace place = {};
-  double mass = 0;                                     ///< kg; >= 0
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();    ///< In the frame of the place, m.
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< Before pick-up, in the base's frame, m/s.
+  double mass = 0;                                   ///< kg; >= 0
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< Centre of mass in the frame of the place, m.
+  Eigen::Vector3d velocity =
+      Eigen::Vector3d::Zero();  ///< Velocity of the mass before pick-up, in the base's frame, m/s.
 };
 
-/// Number of parameters of each section. They are relative changes, in this order: of its stiffness against
-/// shear, stretch, bends and twist, of its mass per length, and of its damping. All but the last are as in
-/// EquilibriumSlopes. Damping does not change with the stiffness. Mass does not include point masses and
-/// payloads.
+/// Number of parameters of each section. The parameters are relative changes, in this order: of the stiffness
+/// against shear, stretch, bend and twist, of the mass per length, and of the damping. The first five are the
+/// same as in EquilibriumSlopes. Damping does not change with the stiffness. Mass does not include point
+/// masses and payloads.
 inline constexpr Eigen::Index dynamics_parameters = 6;
 
 /// Derivatives of a rod's motion, p = M(q) v and dp/dt = f(q, v, input). All matrices have a row for each
-/// mode. The input is the displacements if given, otherwise the tensions. Columns of slack tendons are 0 for
-/// displacements.
+/// mode. The input of a rod is its tendon displacements if they are given, otherwise its tensions. Columns of
+/// slack tendons are 0 for displacements.
 struct RodDynamicsSlopes {
   Eigen::MatrixXd mass;           ///< M = dp/dv
   Eigen::MatrixXd momentum_by_q;  ///< dp/dq at constant v.
   Eigen::MatrixXd force_by_q, force_by_v, force_by_input;
-  /// dp by the parameters at constant q and v, and df; modes x (dynamics_parameters x sections). Bristles of
-  /// tendon friction become stiffer with the rod.
+  /// Derivatives of p and f with respect to the parameters at constant q and v; modes x (dynamics_parameters
+  /// x sections). The bristle stiffness of tendon friction changes with the stiffness of the rod.
   Eigen::MatrixXd momentum_by_parameters, force_by_parameters;
 };
 
 /// Linearised motion around a state: x' = A x + B u.
 struct RodLinear {
-  /// The derivatives from which the matrices are made. They keep digits that A loses if tendons are held and
-  /// hardly stretch: the inverse of an ill-conditioned mass matrix multiplies the stiffness of these tendons.
+  /// Derivatives from which the matrices are computed. If tendons are held and very stiff, they are more
+  /// accurate than A, in which the inverse of an ill-conditioned mass matrix multiplies this stiffness.
   RodDynamicsSlopes slopes;
   Eigen::MatrixXd A, B;            ///< For x = (q, p).
   Eigen::MatrixXd A_rest, B_rest;  ///< For x = (q, v), valid around a rod at rest.
@@ -135,11 +138,13 @@ struct RodLinear {
       lengths_by_q;  ///< Derivatives of tendon lengths with respect to the modes, tendons x modes.
 };
 
-/// Derivatives of (q, p, rate, force) after a step. The integrator uses no other memory.
+/// Derivatives of (q, p, rate, force) after a step. The result of a step depends on no other internal data of
+/// the integrator.
 struct RodStepSlopes {
-  Eigen::MatrixXd by_state;  ///< With respect to (q, p, rate, force) before the step.
+  Eigen::MatrixXd by_state;  ///< Derivatives with respect to (q, p, rate, force) before the step.
   Eigen::MatrixXd by_input;
-  /// By the parameters at a constant state before the step; columns as in RodDynamicsSlopes.
+  /// Derivatives with respect to the parameters, at a constant state before the step; columns as in
+  /// RodDynamicsSlopes.
   Eigen::MatrixXd by_parameters;
 };
 
@@ -155,8 +160,8 @@ class RodDynamics {
   RodDynamics(RodDynamics&&) noexcept;
   RodDynamics& operator=(RodDynamics&&) noexcept;
 
-  /// Sets the surroundings, whose wrenches act in addition to tendons and loads; kept by reference. Null:
-  /// none. Throws std::invalid_argument if one of their points is outside the rod.
+  /// Sets the surroundings, whose wrenches act in addition to tendons and loads; the object keeps a reference
+  /// to them. Null: no surroundings. Throws std::invalid_argument if one of their points is outside the rod.
   void set_surroundings(const RodSurroundings* surroundings);
 
   /// From now on multiplies each section's undeformed length by a factor > 0 that changes at a rate, 1/s
@@ -171,24 +176,25 @@ class RodDynamics {
   /// Returns the rod at rest in an equilibrium of RodStatics. Tendon friction has the value after the tendons
   /// were pulled in.
   [[nodiscard]] RodState rest(const Equilibrium& at) const;
-  /// Returns the state with modes q and rates v. Tendons and loads are those from now on. `slide`: earlier
+  /// Returns the state with modes q and rates v. `tendons` and `loads` act from now on. `slide`: earlier
   /// state of tendons with friction. Null: they have slid at their present rate for 0.1 s, so friction does
   /// not hold tendons at rest.
   [[nodiscard]] RodState start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const TendonInput& tendons,
                                const RodLoads& loads, const RodSlide* slide = nullptr);
 
   /// Adds a point mass to the rod until it is dropped and returns the state after the inelastic impact. The
-  /// generalized momentum of rod and mass is conserved. Energy is lost unless both had the same velocity.
-  /// `tendons` and `loads` are those from now on. chain() does not include the mass. Throws
+  /// generalized momentum of rod and mass is conserved. Energy is lost unless the mass and the place had
+  /// equal velocities. `tendons` and `loads` act from now on. chain() does not include the mass. Throws
   /// std::invalid_argument for a place that is not a node, a mass below 0, or numbers that are not finite.
   [[nodiscard]] RodState pick_up(const RodState& state, const RodPayload& payload, const TendonInput& tendons,
                                  const RodLoads& loads);
-  /// Releases all payloads at a place. They and the rod keep their velocities.
+  /// Releases all payloads at a place. The velocities of the payloads and of the rod do not change.
   [[nodiscard]] RodState drop(const RodState& state, const RodPlace& place, const TendonInput& tendons,
                               const RodLoads& loads);
 
-  /// Advances the state by h seconds. Tendons and loads are constant during the step; they must be those h /
-  /// (1 + spectral radius) after its start. If the step does not converge, the state does not change.
+  /// Advances the state by h seconds. Tendons and loads are constant during the step. Tendons and loads must
+  /// have the values at the time h / (1 + spectral radius) after the start of the step. If the step does not
+  /// converge, the state does not change.
   RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
 
   /// Returns the estimated position error of the tip from the last step, m. 0 before three steps of equal
@@ -204,8 +210,8 @@ class RodDynamics {
   [[nodiscard]] Vector6d momentum(const RodState& state);
   /// Returns the motion at a node: a section's end or a requested place.
   [[nodiscard]] NodeMotion motion(const RodState& state, const RodPlace& place);
-  /// Returns the motion of all nodes. Then node_runs() returns the length of rod that each node represents in
-  /// an integral along the rod, m.
+  /// Returns the motion of all nodes. Afterwards, node_runs() returns the length of rod that each node
+  /// represents in an integral along the rod, m.
   [[nodiscard]] std::vector<NodeMotion> motions(const RodState& state);
   [[nodiscard]] std::span<const double> node_runs() const;
   /// Returns the motion of all points at which the surroundings may act (RodSurroundings::points()).
@@ -220,9 +226,9 @@ class RodDynamics {
   [[nodiscard]] Eigen::VectorXd acceleration(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                              const TendonInput& tendons, const RodLoads& loads);
 
-  /// Returns the generalized forces that tendons or other actuators must apply for the acceleration `a`.
-  /// Weight, loads, stiffness, damping and surroundings act in addition to them. The cost is linear in the
-  /// number of sections. Throws std::invalid_argument as start().
+  /// Returns the generalized forces that tendons or other actuators must apply for the acceleration `a`. The
+  /// result does not include the forces of weight, loads, stiffness, damping and surroundings. The cost is
+  /// linear in the number of sections. Throws std::invalid_argument as start().
   [[nodiscard]] Eigen::VectorXd needed_forces(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                               const Eigen::VectorXd& a, const RodLoads& loads);
   /// Returns the derivatives of tendon lengths with respect to the modes, tendons x modes. The generalized
@@ -233,10 +239,10 @@ class RodDynamics {
   /// Returns the damping matrix D, modes x modes: the viscous forces are -D v.
   [[nodiscard]] Eigen::MatrixXd damping_matrix() const;
 
-  /// Returns the derivatives at a state. Their cost grows with the square of the number of sections. `slide`
-  /// as in start(). Tensions of tendons of given displacement follow from the lengths. Only of a rod at rest
-  /// they are RodState::tensions, if these fit the lengths: lengths of stiff tendons determine tensions with
-  /// few digits.
+  /// Returns the derivatives at a state. The computing time grows with the square of the number of sections.
+  /// `slide` as in start(). Tensions of tendons of given displacement are computed from the tendon lengths.
+  /// This is inaccurate for stiff tendons. So for a rod at rest, RodState::tensions are used instead if they
+  /// fit the lengths.
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
                                          const RodLoads& loads, const RodSlide* slide = nullptr);
   /// Returns the linearised motion around a state. Cost and errors as slopes(). Also throws

@@ -46,13 +46,13 @@ TEST(Dynamics, RefusesWhatIsNoInput) {
     EXPECT_EQ(step.end, DynamicsEnd::bad_input);
     return step.problem;
   };
-  EXPECT_EQ(problem({.tensions = {1, 0, 0, 0, 0, nan}}, {}, 0.01), "tensions that are not finite");
-  EXPECT_EQ(problem({.displacements = {1}}, {}, 0.01), "1 displacements given: expected 6, one a tendon");
-  EXPECT_EQ(problem({}, {.gravity = {0, nan, 0}}, 0.01), "gravity or a load that is not finite");
+  EXPECT_EQ(problem({.tensions = {1, 0, 0, 0, 0, nan}}, {}, 0.01), "tensions must be finite");
+  EXPECT_EQ(problem({.displacements = {1}}, {}, 0.01), "1 displacements given: expected 6, one per tendon");
+  EXPECT_EQ(problem({}, {.gravity = {0, nan, 0}}, 0.01), "gravity and loads must be finite");
   EXPECT_EQ(problem({}, {}, 0), "a step must be above 0 and finite");
   EXPECT_EQ(problem({}, {}, nan), "a step must be above 0 and finite");
   state.q[0] = nan;
-  EXPECT_EQ(problem({}, {}, 0.01), "a state that is not finite");
+  EXPECT_EQ(problem({}, {}, 0.01), "the state must be finite");
 }
 
 // Nearly inextensible tendons are pulled in at once, in one long step.

@@ -41,7 +41,7 @@ RodState RodDynamics::pick_up(const RodState& state, const RodPayload& payload, 
     throw std::invalid_argument("a payload must have a mass of at least 0 and finite numbers");
   Work& work = *work_;
   if (state.q.size() != work.chain.size() || !state.q.allFinite() || !state.momentum.allFinite())
-    throw std::invalid_argument("a state of another rod, or not finite");
+    throw std::invalid_argument("the state belongs to another rod, or is not finite");
   const std::size_t node = work.layout.node_of(payload.place);
   // Momentum of the payload: J^T m u.
   work.velocity.setZero();

@@ -35,7 +35,8 @@ double RodDynamics::step_error(const RodState& state) {
 }
 
 Eigen::VectorXd RodDynamics::velocity(const RodState& state) {
-  if (!work_->find_velocity(state)) throw std::invalid_argument("a state without a mass matrix");
+  if (!work_->find_velocity(state))
+    throw std::invalid_argument("the state has no positive definite mass matrix");
   return work_->velocity;
 }
 
@@ -111,7 +112,7 @@ std::vector<double> RodDynamics::tendon_lengths(const RodState& state) {
 }
 
 Eigen::MatrixXd RodDynamics::mass_matrix(const Eigen::VectorXd& q) {
-  if (q.size() != work_->chain.size()) throw std::invalid_argument("modes of another rod");
+  if (q.size() != work_->chain.size()) throw std::invalid_argument("the modes belong to another rod");
   work_->velocity.setZero();
   work_->motion.place(q.data(), work_->velocity.data());
   work_->matrix.find_columns(work_->motion);
@@ -123,7 +124,7 @@ Eigen::VectorXd RodDynamics::acceleration(const Eigen::VectorXd& q, const Eigen:
   const std::string problem = work_->input_problem(tendons, loads);
   if (!problem.empty()) throw std::invalid_argument(problem);
   if (q.size() != work_->chain.size() || v.size() != q.size())
-    throw std::invalid_argument("modes of another rod");
+    throw std::invalid_argument("the modes belong to another rod");
   Eigen::VectorXd force(q.size());
   work_->hold(nullptr, Work::has_slid);
   work_->motion.place(q.data(), v.data());
@@ -132,7 +133,7 @@ Eigen::VectorXd RodDynamics::acceleration(const Eigen::VectorXd& q, const Eigen:
   work_->motion.find_acceleration_forces(force.data());
   work_->matrix.find_columns(work_->motion);
   if (!work_->matrix.factor(work_->motion, {}, nullptr, false))
-    throw std::invalid_argument("a shape without a mass matrix");
+    throw std::invalid_argument("the shape has no positive definite mass matrix");
   work_->matrix.solve(force.data());
   return force;
 }

@@ -236,7 +236,7 @@ RodStepSlopes RodDynamics::step_slopes(const RodState& state, const TendonInput&
   Eigen::VectorXd q, v;
   if (!(h > 0) || !work_->input_problem(tendons, loads).empty() ||
       !work_->find_stage(state, tendons, loads, h, q, v))
-    throw std::runtime_error("derivatives of a step that does not converge");
+    throw std::runtime_error("the step does not converge, so it has no derivatives");
   const RodDynamicsSlopes by = work_->slopes_at(q, v, tendons, loads);
   const Work::Scheme& scheme = work_->scheme;
   const Eigen::Index n = q.size(), inputs = by.force_by_input.cols(),

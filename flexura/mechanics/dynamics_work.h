@@ -37,29 +37,32 @@ struct RodDynamics::Work {
     double alpha_f, alpha_m, gamma;
     /// Coefficient of h times the stage's rate, in the change of state from the step's start to the stage.
     double stage;
-    double memory;  ///< Coefficient of h times RodState::rate, in the same change.
+    double memory;  ///< Coefficient of h times RodState::rate, in the change of state from the step's start
+                    ///< to the stage.
     double error;   ///< Step error in units of h^3 x'''.
   };
 
-  /// Returns whether all numbers are small enough for finite energies and velocities.
+  /// Returns whether all numbers are so small that energies and velocities are finite.
   [[nodiscard]] static bool is_of_this_world(const Eigen::VectorXd& numbers) {
     return (numbers.array().abs() < 1e100).all();
   }
   void set_surroundings(const RodSurroundings* given);
   [[nodiscard]] std::string input_problem(const TendonInput& tendons, const RodLoads& loads) const;
   [[nodiscard]] bool rubs() const { return !layout.rubbing.empty(); }
-  /// Computes momentum, forces, tensions and friction of a state with rates v. Friction starts from that set
-  /// by hold().
+  /// Computes momentum, forces, tensions and friction of a state with rates v. The initial friction is the
+  /// one set by hold().
   void set_forces(RodState& state, const Eigen::VectorXd& v, const TendonInput& tendons,
                   const RodLoads& loads);
   /// Sets the friction state of the motion and its derivatives (RodMotion::hold).
   void hold(const double* before, double time);
-  /// Time for which tendons have slid at their present rate, s, if nothing else is known.
+  /// Time for which tendons are assumed to have slid at their present rate if there is no earlier state, s.
   static constexpr double has_slid = 0.1;
   RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
-  /// Sets the tensions: those of `tendons`, or those caused by its displacements at the present shape.
+  /// Sets the tensions to those in `tendons`, or computes them from the displacements in `tendons` at the
+  /// present shape.
   void set_tensions(const TendonInput& tendons);
-  /// After set_tensions(): sets the tensions of a state at rest instead if they fit the displacements.
+  /// Call after set_tensions(). For a state at rest, replaces the tensions by those in the state if these fit
+  /// the displacements.
   void keep_tensions_of_rest(const RodState& state, const TendonInput& tendons);
   /// Places the rod at a state, factors the mass matrix and sets velocity_.
   bool find_velocity(const RodState& state);
@@ -75,7 +78,7 @@ struct RodDynamics::Work {
   RodMotion<double> motion;
   RodMatrix matrix;
   const RodSurroundings* surroundings = nullptr;
-  /// Points besides the nodes where surroundings act; null: none.
+  /// Points between nodes at which surroundings act; null: none.
   std::unique_ptr<RodPoints> points = {};
   std::vector<double> rest_lengths, compliance;  // m, m/N
   std::vector<double> grip;                      // N/m, of the pieces of tendons with friction
@@ -83,7 +86,7 @@ struct RodDynamics::Work {
   Eigen::MatrixXd grip_by_parameters;
   std::vector<double> tensions;
   Eigen::VectorXd velocity;
-  /// Bodies of nodes that carry payloads, without the payloads.
+  /// Original bodies (without payloads) of the nodes that carry payloads.
   std::vector<std::pair<std::size_t, RodLayout::Body>> bare = {};
 
   /// Returns the parts of K q + D v that are proportional to each parameter; columns as in RodDynamicsSlopes.

@@ -131,7 +131,7 @@ Identification solve(const IdentificationEquations& equations, const std::vector
   for (int pass = 0; pass < weightings; ++pass) {
     const Fit fit = fit_at(equations, W, result.values);
     if (!fit.information.allFinite() || !fit.slope.allFinite())
-      throw std::invalid_argument("a record whose equations overflow");
+      throw std::invalid_argument("the numbers of the record are too large");
     if (pass == 0 || pass + 1 == weightings) {
       result.is_observable = observable(fit.information, fit.by_noise);
       seen.clear();

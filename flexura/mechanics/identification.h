@@ -19,7 +19,8 @@ struct RodParameter {
     stretch,    ///< Factor on the stretch stiffness.
     bends,      ///< Factor on the bending stiffness in both directions.
     twist,      ///< Factor on the twist stiffness.
-    stiffness,  ///< Factor on all four stiffnesses. It gives Young's modulus if Poisson's ratio is known.
+    stiffness,  ///< Factor on all four stiffnesses. This parameter determines Young's modulus if Poisson's
+                ///< ratio is known.
     /// Damping time, s. The damping is this time times the rod's stiffness, and replaces the rod's own
     /// damping.
     damping,
@@ -32,11 +33,11 @@ struct RodParameter {
 
 /// Measurement of a rod at one time.
 struct RodMotionRecordSample {
-  double time = 0;    ///< s; later than in the previous sample.
+  double time = 0;    ///< Time, s; later than in the previous sample.
   Eigen::VectorXd q;  ///< Strain modes, as in RodChain.
   /// dq/dt, in all samples or in none. Missing: computed from differences of q.
   std::optional<Eigen::VectorXd> v = {};
-  std::vector<double> tensions = {};  ///< N, one per tendon, each >= 0; empty: zero.
+  std::vector<double> tensions = {};  ///< Tensions, N, one per tendon, each >= 0; empty: zero.
   /// Covariance of the errors of q, modes x modes, in all samples or in none; replaces
   /// RodMotionRecord::q_noise. Symmetric, positive definite.
   Eigen::MatrixXd q_covariance = {};
@@ -68,7 +69,7 @@ struct Identification {
   Eigen::MatrixXd covariance;  ///< Covariance of the observable parameters; other rows and columns are 0.
   std::vector<char> is_observable;
   /// If the noise is known: sum of squared residuals, each in standard deviations, divided by the degrees of
-  /// freedom. It is about 1 if the model fits. With unknown noise: 1.
+  /// freedom. The misfit is about 1 if the model fits. With unknown noise: 1.
   double misfit = 0;
   int equations = 0;  ///< Number of scalar equations.
   /// Whether the last iteration changed friction coefficients by less than a hundredth of their standard

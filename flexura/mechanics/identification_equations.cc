@@ -31,28 +31,30 @@ void require_list(const VectorXd& list, Index count, const std::string& name) {
 void require_covariance(const RodMotionRecord& record, std::size_t k, Index modes) {
   const MatrixXd& covariance = record.samples[k].q_covariance;
   if ((covariance.size() > 0) != (record.samples[0].q_covariance.size() > 0))
-    throw std::invalid_argument("covariances are known of all samples, or of none");
+    throw std::invalid_argument("covariances must be given for all samples or for none");
   if (covariance.size() == 0) return;
   if (covariance.rows() != modes || covariance.cols() != modes || !Cholesky(covariance).is_definite())
     throw std::invalid_argument(
         fmt::format("covariance of sample {}: expected {} x {} numbers, positive definite", k, modes, modes));
   if (record.q_noise.size() > 0)
-    throw std::invalid_argument("noise of modes is given twice: for all samples, and for each");
+    throw std::invalid_argument(
+        "the noise of modes is given both for all samples and for single samples: expected one of them");
 }
 
 void require_record(const RodMotionRecord& record, Index modes) {
   if (record.samples.size() < least_samples)
     throw std::invalid_argument(
-        fmt::format("{} samples of a motion: expected at least {}", record.samples.size(), least_samples));
+        fmt::format("the motion has {} samples: expected at least {}", record.samples.size(), least_samples));
   for (std::size_t k = 0; k < record.samples.size(); ++k) {
     const RodMotionRecordSample& sample = record.samples[k];
     require_list(sample.q, modes, fmt::format("modes of sample {}", k));
     if (sample.v.has_value() != record.samples[0].v.has_value())
-      throw std::invalid_argument("rates are known of all samples, or of none");
+      throw std::invalid_argument("rates must be given for all samples or for none");
     if (sample.v) require_list(*sample.v, modes, fmt::format("rates of sample {}", k));
     require_covariance(record, k, modes);
     if (!std::isfinite(sample.time) || (k > 0 && !(sample.time > record.samples[k - 1].time)))
-      throw std::invalid_argument(fmt::format("sample {}: expected a later time than before", k));
+      throw std::invalid_argument(
+          fmt::format("sample {}: expected a later time than that of the previous sample", k));
   }
   for (const auto& [noise, name] :
        {std::pair{&record.q_noise, "noise of modes"}, std::pair{&record.v_noise, "noise of rates"}}) {
@@ -62,7 +64,7 @@ void require_record(const RodMotionRecord& record, Index modes) {
   }
   const bool has_noise = record.q_noise.size() > 0 || record.samples[0].q_covariance.size() > 0;
   if (record.v_noise.size() > 0 && (!record.samples[0].v || !has_noise))
-    throw std::invalid_argument("noise of rates is that of rates that are known, beside that of modes");
+    throw std::invalid_argument("the noise of rates is given: expected also rates, and the noise of modes");
 }
 
 // Rates by differences: derivative of the polynomial through five samples.
@@ -110,7 +112,7 @@ std::vector<Window> windows_of(const std::vector<RodMotionRecordSample>& samples
     while (high > low && samples[high - 1].time >= middle + wide / 2) --high;
     if (high - low < least_in_window)
       throw std::invalid_argument(
-          fmt::format("a window of {} samples: expected at least {}", high - low, least_in_window));
+          fmt::format("a window has {} samples: expected at least {}", high - low, least_in_window));
     Window window{.first = low < 4 ? 0 : low - 4};
     window.count = std::min(samples.size(), high + 4) - window.first;
     window.bump = window.slope = VectorXd::Zero(static_cast<Index>(window.count));

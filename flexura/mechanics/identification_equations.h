@@ -8,8 +8,8 @@
 
 namespace flexura {
 
-/// Equations of motion of a record, integrated over windows: by_parameter x + fixed = noise. They are
-/// linearised in the friction coefficients, around those of the rod.
+/// Equations of motion of a record, integrated over windows: by_parameter x + fixed = noise. The equations
+/// are linearised with respect to the friction coefficients, about the coefficients of the rod.
 struct IdentificationEquations {
   /// Throws std::invalid_argument as identify().
   IdentificationEquations(const Rod& rod, const std::vector<RodParameter>& parameters,

@@ -94,9 +94,9 @@ std::array<bool, 6> strains_of(RodParameter::Kind kind) {
 // Returns the modes that a parameter affects.
 std::vector<Index> parameter_modes(const RodChain& chain, const RodParameter& parameter) {
   if (parameter.section && *parameter.section >= chain.rod().sections.size())
-    throw std::invalid_argument("a parameter of a section that the rod has not");
+    throw std::invalid_argument("a parameter refers to a section that the rod does not have");
   if (parameter.kind == RodParameter::Kind::mass && parameter.section)
-    throw std::invalid_argument("a mass is that of all of the rod");
+    throw std::invalid_argument("the mass is a parameter of the whole rod: expected no section");
   std::vector<Index> modes;
   const std::array<bool, 6> strains = strains_of(parameter.kind);
   for (std::size_t i = 0; i < chain.elements().size(); ++i) {
@@ -119,7 +119,7 @@ void set_friction(ParameterPart& part, const RodChain& chain, const RodParameter
                   std::vector<char>& taken) {
   constexpr double step = 1e-3;
   if (parameter.section && *parameter.section >= chain.rod().sections.size())
-    throw std::invalid_argument("a parameter of a section that the rod has not");
+    throw std::invalid_argument("a parameter refers to a section that the rod does not have");
   const std::vector<std::size_t> tendons = rubbing_tendons(chain.rod(), parameter);
   if (!tendons.empty()) part.coefficient = chain.rod().tendons[tendons.front()].friction;
   Rod more = chain.rod(), less = chain.rod();

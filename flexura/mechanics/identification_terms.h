@@ -13,8 +13,9 @@ namespace flexura {
 /// Returns the tendons whose friction coefficient is the parameter.
 [[nodiscard]] std::vector<std::size_t> rubbing_tendons(const Rod& rod, const RodParameter& parameter);
 
-/// A column of the equations of motion at one sample: the factor of the window's bump and that of its slope,
-/// and the derivatives of both by q and v. Derivatives are empty where they were not asked for.
+/// A column of the equations of motion at one sample. Such a column consists of the factors of the window's
+/// test function and of its derivative, and of the derivatives of both factors with respect to q and v.
+/// Derivatives that were not requested are empty.
 struct IdentificationTerm {
   Eigen::VectorXd bump = {}, slope = {};
   Eigen::MatrixXd bump_by_q = {}, bump_by_v = {}, slope_by_q = {}, slope_by_v = {};
@@ -23,8 +24,8 @@ struct IdentificationTerm {
 /// Terms of the equations of motion of a rod that are linear in the parameters to identify.
 class IdentificationTerms {
  public:
-  /// Keeps `dynamics`, the given rod, by reference. Throws std::invalid_argument for parameters that overlap
-  /// or that the rod has not.
+  /// Keeps a reference to `dynamics`, which contains the given rod. Throws std::invalid_argument for
+  /// parameters that overlap, or that the rod does not have.
   IdentificationTerms(RodDynamics& dynamics, const std::vector<RodParameter>& parameters);
   ~IdentificationTerms();
   IdentificationTerms(const IdentificationTerms&) = delete;
@@ -32,8 +33,9 @@ class IdentificationTerms {
 
   /// Returns the parameters of the given rod.
   [[nodiscard]] const Eigen::VectorXd& nominal() const;
-  /// Returns the term without parameters, then that of each parameter, at a sample with the rates v. Call for
-  /// all samples of a record in their order, since tendons with friction slide from one to the next.
+  /// Returns the terms at a sample with the rates v: first the term without parameters, then the term of each
+  /// parameter. Must be called for all samples of a record in order, because tendons with friction slide from
+  /// one sample to the next.
   [[nodiscard]] std::vector<IdentificationTerm> at(const RodMotionRecordSample& sample,
                                                    const Eigen::VectorXd& v, const RodLoads& loads,
                                                    bool with_slopes);

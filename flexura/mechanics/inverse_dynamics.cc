@@ -20,12 +20,12 @@ constexpr double same_pull = 1e-7;
 void require_modes(const Eigen::VectorXd& values, Eigen::Index count, const char* name) {
   if (values.size() != count)
     throw std::invalid_argument(fmt::format("{} {} given: expected {}", values.size(), name, count));
-  if (!values.allFinite()) throw std::invalid_argument(fmt::format("{} that are not finite", name));
+  if (!values.allFinite()) throw std::invalid_argument(fmt::format("{} must be finite", name));
 }
 
 Eigen::VectorXd most_tensions(const TensionFitConfig& config, Eigen::Index count) {
   if (!(config.effort > 0) || !std::isfinite(config.effort))
-    throw std::invalid_argument("what effort counts must be above 0 and finite");
+    throw std::invalid_argument("the weight of the effort must be above 0 and finite");
   if (config.most.empty()) return Eigen::VectorXd::Constant(count, std::numeric_limits<double>::infinity());
   if (static_cast<Eigen::Index>(config.most.size()) != count)
     throw std::invalid_argument(
@@ -149,7 +149,7 @@ TensionFit computed_torque(RodDynamics& dynamics, const Eigen::VectorXd& q, cons
   for (const Eigen::VectorXd* list : {&v, &desired.v}) require_modes(*list, n, "rates");
   require_modes(desired.a, n, "accelerations");
   if (!std::isfinite(gains.position) || !std::isfinite(gains.velocity))
-    throw std::invalid_argument("gains that are not finite");
+    throw std::invalid_argument("gains must be finite");
   const Eigen::VectorXd a = desired.a + gains.velocity * (desired.v - v) + gains.position * (desired.q - q);
   return inverse_dynamics(dynamics, {.q = q, .v = v, .a = a}, loads, config);
 }

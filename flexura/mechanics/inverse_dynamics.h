@@ -21,31 +21,32 @@ struct RodMotionSample {
 /// Settings of the tension fit.
 struct TensionFitConfig {
   std::vector<double> most = {};  ///< Maxima, N, one per tendon, each >= 0; empty: unbounded.
-  /// Weight of the effort, the sum of squared tensions, relative to the missing forces; > 0. It selects the
-  /// least effort among tensions that apply the same forces. It changes unique tensions by a relative error
-  /// of about its value.
+  /// Weight of the effort, the sum of squared tensions, relative to the missing forces; > 0. This weight
+  /// selects the tensions of least effort among tensions that apply equal forces. If the tensions are unique,
+  /// the weight changes them by a relative error of about this weight.
   double effort = 1e-10;
 };
 
 /// Tensions that come nearest to target generalized forces.
 struct TensionFit {
-  std::vector<double> tensions;  ///< N, one per tendon, each from 0 to its maximum.
+  std::vector<double> tensions;  ///< Tensions, N, one per tendon, each from 0 to its maximum.
   Eigen::VectorXd desired;       ///< Target generalized forces.
   Eigen::VectorXd missing;       ///< Remaining forces: target minus those of the tensions.
-  /// Energies that the rod would store under the target and the missing forces, J. If no tension helps, both
-  /// are equal.
+  /// Elastic energies that the rod would store under the target forces, and under the missing forces, J. If
+  /// no tension reduces the missing forces, both are equal.
   double desired_energy = 0, missing_energy = 0;
-  /// Whether the tensions would be unique without bounds: the forces of the tendons are linearly independent.
+  /// Whether the tensions would be unique without bounds. This is the case if the forces of the tendons are
+  /// linearly independent.
   bool is_determined = false;
 
   /// Returns the missing part of the target, 0 to 1: the square root of missing_energy / desired_energy.
   [[nodiscard]] double residual() const;
 };
 
-/// Returns the tensions that come nearest to the generalized forces `desired` at q. They minimise the missing
-/// energy f^T K^-1 f / 2 with the rod's stiffness K, so forces on stiff strains have little weight. Among
-/// several minima, the one with least effort is returned. Throws std::invalid_argument for lists of wrong
-/// length, numbers that are not finite, or a bound below 0.
+/// Returns the tensions that come nearest to the generalized forces `desired` at q. These tensions minimise
+/// the missing energy f^T K^-1 f / 2, where f are the missing forces and K is the rod's stiffness. So forces
+/// on stiff strains have little weight. Among several minima, the one with least effort is returned. Throws
+/// std::invalid_argument for lists of wrong length, numbers that are not finite, or a bound below 0.
 [[nodiscard]] TensionFit nearest_tensions(RodDynamics& dynamics, const Eigen::VectorXd& q,
                                           const Eigen::VectorXd& desired,
                                           const TensionFitConfig& config = {});

@@ -29,36 +29,37 @@ std::string input_problem(const RodStatics& statics, const RodTarget& target, co
   const std::size_t count = statics.chain().tendons();
   if (count == 0) return "a rod without tendons";
   if (most.size() != count)
-    return fmt::format("{} greatest tensions given: expected {}, one a tendon", most.size(), count);
+    return fmt::format("{} largest tensions given: expected {}, one per tendon", most.size(), count);
   for (const double each : most)
-    if (!std::isfinite(each) || each < 0) return "a greatest tension that is negative or not finite";
+    if (!std::isfinite(each) || each < 0) return "a largest tension is negative or not finite";
   if (!target.position && !target.direction && !target.rotation && target.places.empty())
-    return "a target that asks for nothing";
-  if (target.position && !target.position->allFinite()) return "a position that is not finite";
-  if (target.direction && target.rotation) return "direction and rotation: expected one of them";
+    return "the target is empty: expected a position, a direction, a rotation or places";
+  if (target.position && !target.position->allFinite()) return "the target position must be finite";
+  if (target.direction && target.rotation)
+    return "both direction and rotation are given: expected only one of them";
   if (target.direction && (!target.direction->allFinite() || target.direction->norm() == 0))
-    return "a direction that is not finite, or zero";
+    return "the target direction must be finite and not zero";
   if (target.rotation) {
     const Eigen::Matrix3d& R = *target.rotation;
     if (!R.allFinite() || !((R.transpose() * R).isIdentity(1e-6)) ||
         !(R.col(0).cross(R.col(1)).dot(R.col(2)) > 0))
-      return "a matrix that is no rotation";
+      return "the target rotation is not a rotation matrix";
   }
   if (!std::isfinite(target.angle_weight) || target.angle_weight <= 0)
-    return "a weight of angles that is not positive";
+    return "the weight of angles must be above 0";
   for (const RodTarget::Place& place : target.places) {
-    if (!place.position.allFinite()) return "a place's position that is not finite";
+    if (!place.position.allFinite()) return "the target position of a place must be finite";
     if (!node_of(statics.chain(), place.place))
-      return fmt::format("a place at {} of section {}, which is no node of the rod", place.place.at,
+      return fmt::format("the place at {} of section {} is not a node of the rod", place.place.at,
                          place.place.section);
   }
-  if (!std::isfinite(config.tolerance) || config.tolerance <= 0) return "a tolerance that is not positive";
+  if (!std::isfinite(config.tolerance) || config.tolerance <= 0) return "the tolerance must be above 0";
   if (config.max_starts < 1) return "no starts";
   if (config.start && (!config.start->converged() || config.start->tensions.size() != count ||
                        config.start->q.size() != statics.chain().size()))
-    return "a start that is no equilibrium of this rod";
+    return "the start is not an equilibrium of this rod";
   if (config.start && std::ranges::any_of(config.start->tensions, [](double t) { return !std::isfinite(t); }))
-    return "a start with tensions that are not finite";
+    return "the tensions of the start must be finite";
   return "";
 }
 
@@ -195,12 +196,13 @@ class InverseSearch {
     if (!is_reached_) result.problem = why_not(result.equilibrium);
   }
   [[nodiscard]] std::string why_not(const Equilibrium& at) {
-    if (at.converged() && is_within()) return "the equilibrium there is not stable";
-    if (!is_stationary_) return "out of steps before the nearest was found";
+    if (at.converged() && is_within()) return "the equilibrium at the target is not stable";
+    if (!is_stationary_) return "the search ended after its largest number of steps";
     descent_.gradient = descent_.J.transpose() * descent_.r;
     const bool is_held = pressure(bounds_, x_, descent_.gradient) > 1e-6 * descent_.r.norm();
-    return is_held ? "bounds of the tensions hold it: a tendon would push, or pull harder than it may"
-                   : "no change of the tensions comes nearer";
+    return is_held ? "the bounds of the tensions prevent it: a tendon would have to push, or to exceed its "
+                     "largest tension"
+                   : "no small change of the tensions reduces the distance from the target";
   }
 
   const InverseStaticsConfig& config_;
@@ -229,7 +231,7 @@ const char* words(InverseStaticsEnd end) {
     case InverseStaticsEnd::no_equilibrium:
       break;
   }
-  return "no equilibrium to begin with";
+  return "no equilibrium found for the start of the search";
 }
 
 InverseStaticsResult solve_inverse_statics(RodStatics& statics, const RodTarget& target,

@@ -13,7 +13,7 @@
 // "Inverse statics"). The result is reproducible bit for bit.
 namespace flexura {
 
-/// Target of a rod, in the frame of its base. Omitted parts are free; at least one must be given.
+/// Target of a rod, in the frame of its base. Omitted parts are free. At least one part must be given.
 struct RodTarget {
   /// A place of the rod and its target, m.
   struct Place {
@@ -32,10 +32,10 @@ struct RodTarget {
 
 /// Start and tolerances of the search.
 struct InverseStaticsConfig {
-  /// The robot's present state: the search starts with its tensions and its branch of equilibria. Default:
-  /// the undeformed rod without tensions.
+  /// The robot's present state. The search starts with the tensions of this state, on the same branch of
+  /// equilibria. Default: the undeformed rod without tensions.
   std::optional<Equilibrium> start = {};
-  /// Largest error of each place, m, and of weighted angles; > 0.
+  /// Largest accepted error of each place, and of weighted angles, m; > 0.
   double tolerance = 1e-8;
   int max_starts = 12;  ///< Largest number of searches from different tensions; >= 1.
   /// Makes all searches and returns the result with least effort. The effort may have several minima.
@@ -46,7 +46,7 @@ struct InverseStaticsConfig {
 enum class InverseStaticsEnd {
   reached,         ///< A stable equilibrium meets the target within the tolerance.
   nearest,         ///< No search reached the target; the result is the nearest one found.
-  bad_input,       ///< Described in `problem`.
+  bad_input,       ///< The input is invalid, as described in `problem`.
   no_equilibrium,  ///< No initial equilibrium was found.
 };
 /// Returns a description for users.
@@ -58,8 +58,9 @@ struct InverseStaticsResult {
   std::string problem;  ///< Why the target was not reached, in words.
   /// Whether the target was reached with a local minimum of the sum of squared tensions.
   bool is_least = false;
-  std::vector<double> tensions;  ///< N, each from 0 to its maximum. Empty for bad input.
-  /// Equilibrium under these tensions. Its `displacements` are what a drive pulls in, m.
+  std::vector<double> tensions;  ///< Tensions, N, each from 0 to its maximum; empty for invalid input.
+  /// Equilibrium under these tensions. The `displacements` of the equilibrium are the lengths that a drive
+  /// must pull in, m.
   Equilibrium equilibrium;
   double position_error = 0;  ///< Largest error of the tip and all places, m.
   double angle_error = 0;     ///< Error of the target direction or rotation, rad; 0 without one.
@@ -72,9 +73,9 @@ struct InverseStaticsResult {
 
 /// Inverse kinematics under load: finds tensions that bring the equilibrium under `loads` to the target with
 /// least effort. Tensions are between 0 and `most` (N, one per tendon, finite). If no tensions reach the
-/// target, it minimises the sum of squared distances and weighted angles. Reports bad input in the result and
-/// does not throw. Afterwards `statics` is solved with the result's tensions, so its slopes() are those at
-/// the result.
+/// target, it minimises the sum of squared distances and weighted angles. Reports invalid input in the result
+/// and does not throw. The last solution of `statics` is the result, so that its slopes() are the derivatives
+/// at the result.
 ///
 /// Method: Levenberg and Marquardt within bounds (BoundedDescent), then stabilized sequential quadratic
 /// programming (S. J. Wright 1998) along the tensions that reach the target. The latter handles dependent

@@ -12,12 +12,12 @@ namespace flexura {
                                            const Eigen::VectorXd& low, const Eigen::VectorXd& high);
 
 /// Moves x along the solutions of the descent's problem to a nearby minimum of |x| within the bounds. The
-/// lower bound of each variable is 0. On entry x is a solution, and `descent` has r and J at x. x stays a
-/// solution. Returns whether x is such a minimum.
+/// lower bound of each variable is 0. Initially x must be a solution, and `descent` must have r and J at x.
+/// Finally x is also a solution. Returns whether the final x is a minimum of |x|.
 ///
 /// Stabilized sequential quadratic programming (S. J. Wright 1998), which handles dependent constraints, with
-/// M. J. D. Powell's damped updates of the Lagrangian's second derivative. Each step ends with a descent back
-/// to the solutions and is kept if |x| is smaller.
+/// M. J. D. Powell's damped updates of the Lagrangian's second derivative. Each step ends with a descent to a
+/// solution. The step is accepted if |x| has decreased.
 bool run_down_to_least(BoundedDescent& descent, Eigen::VectorXd& x);
 
 }  // namespace flexura

@@ -143,7 +143,7 @@ void require_samples(std::span<const RodPlaceSample> samples, std::size_t places
       throw std::invalid_argument(
           fmt::format("sample {}: {} positions given: expected {}", k, positions.size(), places));
     if (!std::ranges::all_of(positions, [](const Eigen::Vector3d& p) { return p.allFinite(); }))
-      throw std::invalid_argument(fmt::format("sample {}: a position that is not finite", k));
+      throw std::invalid_argument(fmt::format("sample {}: positions must be finite", k));
   }
 }
 
@@ -224,8 +224,8 @@ RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places
     energy = std::max(energy, there);
   }
   if (const double left = std::sqrt(fits.square / coordinates); !(left < most_left * length))
-    throw std::invalid_argument(
-        fmt::format("no shape of the rod comes near to the places: {:.3g} m are left of them", left));
+    throw std::invalid_argument(fmt::format(
+        "no shape of the rod is near the measured places: the remaining distance is {:.3g} m", left));
   // Lower bound for a rod that does not bend.
   energy = std::max(energy, 1e-9 * stiffness.maxCoeff());
   spread = (2 * other_energy * energy * stiffness.cwiseInverse()).cwiseSqrt();
@@ -257,7 +257,7 @@ double places_missed(const Rod& rod, std::span<const RodPlace> places,
   const std::vector<RodMotionRecordSample>& motion = record.record.samples;
   RodDynamics dynamics(rod, {}, places);
   if (motion.size() != samples.size() || motion[0].q.size() != dynamics.chain().size())
-    throw std::invalid_argument("a record that is not of these samples of this rod");
+    throw std::invalid_argument("the record does not belong to these samples of this rod");
   const RodLoads& loads = record.record.loads;
   RodState state =
       dynamics.start(motion[0].q, first_rates(record.record), {.tensions = motion[0].tensions}, loads);

@@ -63,13 +63,13 @@ std::string section_problem(const RodSection& section) {
 }
 
 std::string tendon_problem(const TendonRoute& tendon, std::size_t sections) {
-  if (tendon.section >= sections) return "ends at a section that the rod has not";
+  if (tendon.section >= sections) return "ends at a section that the rod does not have";
   bool is_finite = true;
   for (const double value : {tendon.radius, tendon.radius_slope, tendon.angle, tendon.angle_slope})
     is_finite = is_finite && std::isfinite(value);
   for (const auto* coefficients : {&tendon.x, &tendon.y})
     for (const double value : *coefficients) is_finite = is_finite && std::isfinite(value);
-  if (!is_finite) return "has a route that is not finite";
+  if (!is_finite) return "has a path that is not finite";
   if (!is_at_least_0(tendon.compliance)) return "must have a compliance of at least 0";
   if (!is_at_least_0(tendon.friction)) return "must have a friction of at least 0";
   return "";

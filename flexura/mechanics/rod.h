@@ -21,7 +21,7 @@ namespace flexura {
 struct StrainModes {
   int shear = 1;
   int stretch = 1;
-  int bend = 5;  ///< For each of the two bending directions.
+  int bend = 5;  ///< Number of polynomials for each of the two bending directions.
   int twist = 4;
   /// Whether, in a section with guide disks, each piece between two disks has separate modes (rod_parts.h).
   /// If false, the modes are those of the whole section, which is inaccurate for strongly bent pieces.
@@ -70,8 +70,8 @@ struct RodSection {
   /// run in a continuous channel.
   int disks = 0;
   StrainModes modes = {};
-  /// Number of Gauss-Lobatto nodes of the quadrature and of the pose chain, both ends included. 0: as many as
-  /// the modes need.
+  /// Number of Gauss-Lobatto nodes for the quadrature and for the poses, including both ends. 0: computed
+  /// from the number of modes.
   int nodes = 0;
 
   /// Returns the diagonal of the stiffness at t in [0, 1] of the length, N and N m^2.
@@ -100,8 +100,8 @@ struct TendonRoute {
   double angle_slope = 0;              ///< Change of the angle per arc length (helix), rad/m.
   std::vector<double> x = {}, y = {};  ///< Coefficients of powers of s: m, m/m, ...
   double compliance = 0;               ///< Extension per newton, m/N; >= 0. Used with displacements only.
-  /// Coulomb friction coefficient; >= 0. While the tendon is pulled in, its tension after turning by an angle
-  /// since the base is exp(-friction angle) times that at the base (L. Euler, J. Eytelwein).
+  /// Coulomb friction coefficient; >= 0. While the tendon is pulled in, its tension after a wrap angle from
+  /// the base is exp(-friction * angle) times the tension at the base (L. Euler, J. Eytelwein).
   double friction = 0;
 
   /// Offset in the cross-section and its first two derivatives with respect to s; z is 0.
@@ -117,7 +117,7 @@ struct EndLoad {
   std::size_t section = 0;
   /// N, in the base's frame; if `following`, in that of the section's end.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< N m, in the same frame as the force.
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< Moment, N m, in the same frame as the force.
   /// Whether force and moment turn with the section's end.
   bool following = false;
 };
@@ -144,7 +144,8 @@ struct RodLoads {
   std::vector<PointSpring> springs = {};
 };
 
-/// A rod clamped at its base, whose frame is the reference of all quantities. It leaves the origin along z.
+/// A rod clamped at its base. All quantities are in the frame of the base. The rod starts at the origin,
+/// along z.
 struct Rod {
   std::vector<RodSection> sections;  ///< Base first; at least one.
   std::vector<TendonRoute> tendons;
@@ -153,9 +154,9 @@ struct Rod {
   [[nodiscard]] double length() const;
 };
 
-/// Returns the errors of a rod, in words; empty if it is valid. Errors are numbers that are not finite, and
-/// lengths, radii or stiffnesses that are not positive. Further errors are a tendon of a missing section and
-/// counts out of bounds.
+/// Returns the errors of a rod as text; empty if the rod is valid. Errors are numbers that are not finite,
+/// lengths, radii or stiffnesses that are not positive, tendons of missing sections, and counts out of
+/// bounds.
 [[nodiscard]] std::vector<std::string> rod_problems(const Rod& rod);
 
 }  // namespace flexura

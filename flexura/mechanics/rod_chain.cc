@@ -52,7 +52,7 @@ RodChain::RodChain(Rod rod, std::span<const RodPlace> places) : rod_(std::move(r
   if (!problems.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(problems, "; ")));
   for (const RodPlace& place : places)
     if (place.section >= rod_.sections.size() || !is_part(place.at))
-      throw std::invalid_argument("a place outside the rod");
+      throw std::invalid_argument("the place is outside the rod");
   std::vector<double> at;
   for (RodPart& part : parts_of(rod_)) {
     at.clear();
@@ -89,7 +89,8 @@ RodChain::RodChain(Rod rod, std::span<const RodPlace> places) : rod_(std::move(r
 RodNode RodChain::node_of(const RodPlace& place) const {
   const auto found =
       std::ranges::find_if(elements_, [&](const RodElement& element) { return element.part().holds(place); });
-  if (found == elements_.end() || !is_part(place.at)) throw std::invalid_argument("a place outside the rod");
+  if (found == elements_.end() || !is_part(place.at))
+    throw std::invalid_argument("the place is outside the rod");
   return {static_cast<std::size_t>(found - elements_.begin()),
           found->grid().node_at(found->part().within(place.at))};
 }

@@ -28,8 +28,8 @@ struct RodNode {
 /// equilibrium. If the loads have an energy, r is the gradient of the total energy. All quantities are in the
 /// frame of the base.
 ///
-/// An element receives only the twist of its base from proximal ones and only a wrench from distal ones. So
-/// each element's modes are eliminated from tip to base, as in the articulated-body algorithm (R.
+/// Proximal elements affect an element only by the twist of its base, and distal elements only by a wrench.
+/// So the modes are eliminated element by element from tip to base, as in the articulated-body algorithm (R.
 /// Featherstone, Rigid Body Dynamics Algorithms, ch. 7).
 class RodChain {
  public:
@@ -41,15 +41,15 @@ class RodChain {
   /// Returns the number of modes.
   [[nodiscard]] Eigen::Index size() const { return size_; }
   [[nodiscard]] std::size_t tendons() const { return rod_.tendons.size(); }
-  /// Returns for each mode the factor that makes it dimensionless. It is the section's length for bends and
-  /// twists, which become radians, and 1 for stretch and shear.
+  /// Returns for each mode the factor that makes the mode dimensionless. The factor is the section's length
+  /// for bends and twists, which become radians, and 1 for stretch and shear.
   [[nodiscard]] const Eigen::VectorXd& scales() const { return scales_; }
   [[nodiscard]] const std::vector<RodElement>& elements() const { return elements_; }
   /// Returns the node at a place. If there is no node at the place, returns the nearest node of the same
   /// element. Throws std::invalid_argument for a place outside the rod.
   [[nodiscard]] RodNode node_of(const RodPlace& place) const;
-  /// Returns the section, if any, whose modes are too few for the bend between its guide disks at the last
-  /// balance.
+  /// Returns the section, if any, that has too few modes for the bend between its guide disks at the last
+  /// balance().
   [[nodiscard]] std::optional<std::size_t> coarse_section() const;
   /// Returns the index in q of the first mode of element i.
   [[nodiscard]] Eigen::Index first(std::size_t element) const { return first_[element]; }
@@ -75,14 +75,14 @@ class RodChain {
   /// Returns the derivative of r with respect to the share of the loads at the last balance(), size().
   [[nodiscard]] const Eigen::VectorXd& load_slope() const { return load_slope_; }
   [[nodiscard]] double strain_energy() const;
-  /// Returns whether a tendon pulled the holes of two guide disks together at the last balance. Real disks
-  /// would touch earlier. A shape beyond this one cannot be an equilibrium.
+  /// Returns whether a tendon pulled the holes of two guide disks together at the last balance(). Real disks
+  /// would touch earlier. Shapes with a larger bend cannot be equilibria.
   [[nodiscard]] bool disks_meet() const;
-  /// Returns minus the work of all loads at the last balance, J; it is 0 for loads at the base's origin. It
-  /// is a potential energy if has_energy().
+  /// Returns minus the work of all loads at the last balance, J; it is 0 for loads at the base's origin. The
+  /// result is a potential energy if has_energy().
   [[nodiscard]] double load_energy(const RodLoads& loads) const;
-  /// Returns whether r is the gradient of an energy under these loads: no moments, follower loads or
-  /// friction.
+  /// Returns whether r is the gradient of an energy under these loads. This is the case without moments,
+  /// follower loads and friction.
   [[nodiscard]] bool has_energy(const RodLoads& loads) const;
 
   /// Factors the derivative of r at the last balance plus `share` times the rod's stiffness. Returns false if
@@ -90,11 +90,12 @@ class RodChain {
   bool factor(double share = 0);
   /// Returns K dq with the stiffness K, the second derivative of the strain energy; size().
   [[nodiscard]] Eigen::VectorXd stiffness_times(const Eigen::VectorXd& dq) const;
-  /// Returns the norm of a residual, J^1/2: the square root of the strain energy under this residual alone.
+  /// Returns the norm of a residual, J^1/2: the square root of the strain energy that this residual alone
+  /// would cause.
   [[nodiscard]] double stiffness_norm(const Eigen::VectorXd& residual) const;
-  /// Returns the number of negative eigenvalues of the factored derivative. 0: the rod is stable at constant
-  /// tensions and loads. With moments or follower loads it is 1 if the determinant is negative, otherwise 0.
-  /// This detects static divergence but not flutter, which depends on the mass.
+  /// Returns the number of negative eigenvalues of the factored derivative. If the number is 0, the rod is
+  /// stable at constant tensions and loads. With moments or follower loads the result is 1 if the determinant
+  /// is negative, otherwise 0. This detects static divergence but not flutter, which depends on the mass.
   [[nodiscard]] int negative_count() const { return negative_; }
   /// Returns the number of negative eigenvalues for tendons held at their displacements. `of_give`: number of
   /// negative eigenvalues of the tendons' compliance matrix.
@@ -126,7 +127,7 @@ class RodChain {
   /// Computes the poses of all nodes at q. balance() computes poses and columns only if loads or chords need
   /// them.
   void place(const Eigen::VectorXd& q);
-  /// Computes poses and columns, the derivatives of node twists with respect to q.
+  /// Computes poses, and columns (the derivatives of node twists with respect to q).
   void place_with_columns(const Eigen::VectorXd& q);
   /// Returns the pose of a node, after place() or place_with_columns().
   [[nodiscard]] const Pose& pose(const RodNode& at) const { return elements_[at.element].poses()[at.node]; }

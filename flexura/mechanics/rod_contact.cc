@@ -26,9 +26,9 @@ void require_places(const std::vector<RodPlace>& places, std::size_t sections) {
     const bool rises = i == 0 || place.section > places[i - 1].section ||
                        (place.section == places[i - 1].section && place.at > places[i - 1].at);
     if (!is_inside || !rises)
-      throw std::invalid_argument(
-          fmt::format("contacts: place {} at {} of section {}: expected places of the rod that rise", i + 1,
-                      place.at, place.section + 1));
+      throw std::invalid_argument(fmt::format(
+          "contacts: place {} at {} of section {}: expected places on the rod, in order from base to tip",
+          i + 1, place.at, place.section + 1));
   }
 }
 
@@ -38,7 +38,7 @@ RodContact::RodContact(const RodChain& chain, const RodContactConfig& config)
     : law_(config.law), itself_(config.itself) {
   if (const std::string problem = law_problem(law_); !problem.empty()) throw std::invalid_argument(problem);
   if (!config.X_WB.rotation.allFinite() || !config.X_WB.position.allFinite())
-    throw std::invalid_argument("contacts: a pose of the base that is not finite");
+    throw std::invalid_argument("contacts: the pose of the base must be finite");
   for (const ObstacleConfig& obstacle : config.obstacles)
     shapes_.emplace_back(obstacle, config.X_WB.inverse());
   require_radii(config, chain.rod().sections.size());
@@ -201,7 +201,7 @@ void RodContact::pull_points(std::span<const std::size_t> chosen, std::span<cons
 void RodContact::find(std::span<const NodeMotion> points, std::vector<ContactForce>& found) const {
   if (points.size() != points_.size())
     throw std::invalid_argument(
-        fmt::format("contacts at {} points are not those at {}", points_.size(), points.size()));
+        fmt::format("contacts: expected the motion of {} points, not of {}", points_.size(), points.size()));
   found.clear();
   std::vector<std::size_t> all(points.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
@@ -245,7 +245,7 @@ std::vector<RodPlace> contact_places(const Rod& rod, double spacing) {
   const double length = rod.length();
   if (!(spacing > 0) || !std::isfinite(length) || !(length / spacing <= most_places))
     throw std::invalid_argument(
-        fmt::format("a spacing of {} m along a rod of {} m: expected one above 0 that makes at most 10,000 "
+        fmt::format("a spacing of {} m along a rod of {} m: expected a spacing above 0 with at most 10,000 "
                     "places",
                     spacing, length));
   std::vector<RodPlace> places;

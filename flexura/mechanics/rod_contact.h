@@ -26,12 +26,12 @@ struct RodContactConfig {
   /// Radii of the tube around each section, at the section's base and end, m; empty: those of the elastic
   /// rod.
   std::vector<std::array<double, 2>> radii = {};
-  /// Enables self-contact. It acts between places whose distance along the rod exceeds `itself_apart` times
-  /// the largest radius of the tube.
+  /// Enables self-contact. Self-contact acts between places whose distance along the rod exceeds
+  /// `itself_apart` times the largest radius of the tube.
   bool itself = true;
   double itself_apart = 6;
-  /// Contact points on the rod in the order from base to tip (contact_places); empty: the chain's nodes. They
-  /// need not be nodes. Points far from everything cost nothing.
+  /// Contact points on the rod in the order from base to tip (contact_places); empty: the chain's nodes. The
+  /// points need not be nodes. Points that are far from all bodies need no computing time.
   std::vector<RodPlace> places = {};
 };
 
@@ -54,19 +54,20 @@ struct ContactForce {
   bool is_deep = false;
 };
 
-/// Contact of a rod's tube with obstacles and itself, at points along the rod. Each point represents the rod
-/// half-way to its neighbours. So the spacing of points must not exceed the size of the obstacles.
+/// Contact of a rod's tube with obstacles and with itself, at points along the rod. Each point represents
+/// half of the intervals to its two neighbours. So the spacing of the points must not exceed the size of the
+/// obstacles.
 class RodContact final : public RodSurroundings {
  public:
-  /// `chain` is that of RodDynamics. Throws std::invalid_argument for an invalid law, obstacle, radius or
+  /// `chain`: the chain of RodDynamics. Throws std::invalid_argument for an invalid law, obstacle, radius or
   /// place.
   RodContact(const RodChain& chain, const RodContactConfig& config);
 
-  /// Sets no wrenches at nodes, because contact acts at points only.
+  /// Sets the wrenches at nodes to 0, because contact acts only at points.
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
             std::span<NodePull> pulls) const override;
   [[nodiscard]] std::span<const RodPlace> points() const override { return places_; }
-  /// Chooses the points that may touch something. This and the following functions are not thread-safe.
+  /// Chooses the points that may touch a body. This function and the following ones are not thread-safe.
   void choose(std::span<const NodeMotion> nodes, std::span<const double> lengths,
               std::vector<std::size_t>& chosen) const override;
   void pull_points(std::span<const std::size_t> chosen, std::span<const NodeMotion> points,
@@ -159,9 +160,9 @@ class RodContact final : public RodSurroundings {
   mutable std::vector<Meeting> meetings_;
 };
 
-/// Returns places along a rod, section ends included, with at most `spacing` m between them. Obstacles of
-/// this size are detected. Throws std::invalid_argument for a spacing that is not positive, or that makes
-/// more than 10,000 places.
+/// Returns places along a rod, section ends included, with at most `spacing` m between them. At this spacing,
+/// obstacles of the size `spacing` are detected. Throws std::invalid_argument for a spacing that is not
+/// positive, or that makes more than 10,000 places.
 [[nodiscard]] std::vector<RodPlace> contact_places(const Rod& rod, double spacing);
 
 }  // namespace flexura

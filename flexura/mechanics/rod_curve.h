@@ -9,8 +9,8 @@
 namespace flexura {
 
 /// A smooth curve through places along a rod, with a cubic between consecutive places. The slope at a place
-/// is that of the parabola through it and its neighbours. The tangent is continuous, and the error on a
-/// smooth rod is of fourth order in the spacing.
+/// is the slope of the parabola through this place and its two neighbours. The tangent is continuous, and the
+/// error on a smooth rod is of fourth order in the spacing.
 class RodCurve {
  public:
   /// Segment from one place to the next, computed from four places x_i: x(u) = sum of weights.row(i) . (1, u,

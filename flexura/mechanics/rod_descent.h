@@ -11,10 +11,10 @@ namespace flexura {
 
 /// Viscous descent of a rod's potential energy from any shape to an equilibrium. The rod moves as if it had
 /// no mass and a viscosity proportional to its stiffness. Each step is an implicit Euler step: a Newton step
-/// with a share of the stiffness added to the derivative. The share is small where the energy is convex.
-/// If the forces have an energy (no friction, moments or follower loads), each step reduces the energy, and
-/// saddle points are left in a direction in which it decreases. If the forces have no energy, steps are
-/// limited to lengths for which the equations are nearly linear.
+/// with a share of the stiffness added to the derivative. The share is small where the energy is convex. If
+/// the forces have a potential (no friction, moments or follower loads), each step reduces the energy. From
+/// saddle points the descent continues in a direction in which the energy decreases. If the forces have no
+/// potential, steps are limited to lengths for which the equations are nearly linear.
 class RodDescent {
  public:
   /// Input of a tendon: a given tension, or a base that is held in place.
@@ -22,21 +22,21 @@ class RodDescent {
     double tension = 0;  ///< Tension, N, of a tendon that is not held.
     bool is_held = false;
     double length = 0;      ///< Path length above which a held tendon pulls, m.
-    double compliance = 0;  ///< m/N; > 0 for a held tendon.
+    double compliance = 0;  ///< Compliance, m/N; > 0 for a held tendon.
     /// Additional compliance of a held tendon around the value `tension`, m/N (augmented Lagrangian: M.
     /// Hestenes, M. J. D. Powell 1969). The final tension is returned as `tension`.
     double penalty = 0;
   };
 
-  /// Uses the chain and changes its state.
+  /// Keeps a reference to the chain, and changes the state of the chain.
   RodDescent(RodChain& chain, const RodLoads& loads);
 
-  /// Moves q to an equilibrium and returns each tendon's tension there. Returns false if it found none, or if
-  /// the rod is compressed to a negative length.
+  /// Moves q to an equilibrium, and sets the tension of each tendon to its value there. Returns false if no
+  /// equilibrium was found, or if the rod is compressed to a negative length.
   bool fall(Eigen::VectorXd& q, std::vector<Held>& tendons);
   /// Whether the second derivative of the energy does not determine stability. One cause is a direction
-  /// without stiffness, such as free rotation in a rotationally symmetric world. The other is tendons that
-  /// are just taut and hold the rod, which is tested with pushes in several directions.
+  /// without stiffness, such as free rotation in a rotationally symmetric world. Another cause is tendons
+  /// that are just taut and hold the rod. This is tested with pushes in several directions.
   [[nodiscard]] bool is_neutral() const { return is_neutral_; }
   /// Number of linear systems solved.
   [[nodiscard]] int iterations() const { return iterations_; }

@@ -15,7 +15,7 @@ RodDrag::RodDrag(const RodChain& chain, const RodDragConfig& config) : config_(c
                              config.linear_across, config.linear_along})
     if (!(value >= 0) || !std::isfinite(value))
       throw std::invalid_argument("drag: density and coefficients must be at least 0 and finite");
-  if (!config.flow.allFinite()) throw std::invalid_argument("drag: a flow that is not finite");
+  if (!config.flow.allFinite()) throw std::invalid_argument("drag: the flow must be finite");
   const std::vector<RodSection>& sections = chain.rod().sections;
   if (!config.radii.empty() && config.radii.size() != sections.size())
     throw std::invalid_argument(fmt::format("drag: {} pairs of radii for {} sections: expected one each",
@@ -65,7 +65,7 @@ RodDrag::Force RodDrag::force_at(const Node& node, const Eigen::Vector3d& veloci
 void RodDrag::pull(std::span<const NodeMotion> nodes, std::span<const double> run,
                    std::span<NodePull> pulls) const {
   if (nodes.size() != nodes_.size() || pulls.size() != nodes_.size())
-    throw std::invalid_argument("drag: a rod of other nodes");
+    throw std::invalid_argument("drag: expected a rod with the same nodes");
   using Rows = Eigen::Matrix<double, 3, 6>;
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     NodePull& pull = pulls[k];
@@ -96,7 +96,7 @@ void RodDrag::pull(std::span<const NodeMotion> nodes, std::span<const double> ru
 
 double RodDrag::power(std::span<const NodeMotion> nodes, std::span<const double> run) const {
   if (nodes.size() != nodes_.size() || run.size() != nodes_.size())
-    throw std::invalid_argument("drag: a rod of other nodes");
+    throw std::invalid_argument("drag: expected a rod with the same nodes");
   double power = 0;
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     const Eigen::Vector3d velocity =

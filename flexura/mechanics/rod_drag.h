@@ -15,11 +15,11 @@ namespace flexura {
 ///     across: density diameter across_coefficient |u| u / 2 + linear_across u
 ///     along:  pi density diameter along_coefficient |w| w / 2 + linear_along w
 struct RodDragConfig {
-  /// Density of the fluid, kg/m^3. All numbers down to `linear_along` are >= 0.
+  /// Density of the fluid, kg/m^3. This number and the following ones, up to `linear_along`, are >= 0.
   double density = 1000;
-  double across_coefficient = 1;    ///< Form drag; about 1 for a cylinder.
-  double along_coefficient = 0.01;  ///< Skin friction.
-  double linear_across = 0;         ///< N s/m per metre of rod.
+  double across_coefficient = 1;    ///< Coefficient of form drag; about 1 for a cylinder.
+  double along_coefficient = 0.01;  ///< Coefficient of skin friction.
+  double linear_across = 0;         ///< Linear drag across the rod, N s/m per metre of rod.
   double linear_along = 0;
   Eigen::Vector3d flow = Eigen::Vector3d::Zero();  ///< Velocity of the fluid in the base's frame, m/s.
   /// Radii of the tube around each section, at the section's base and end, m; empty: those of the elastic
@@ -30,8 +30,8 @@ struct RodDragConfig {
 /// Drag on a moving rod. Added mass and lift are not modelled.
 class RodDrag final : public RodSurroundings {
  public:
-  /// Acts at the nodes of the chain of RodDynamics. Throws std::invalid_argument for a negative coefficient,
-  /// a number that is not finite, or invalid radii.
+  /// The drag acts at the nodes of `chain`, the chain of RodDynamics. Throws std::invalid_argument for a
+  /// negative coefficient, a number that is not finite, or invalid radii.
   RodDrag(const RodChain& chain, const RodDragConfig& config);
 
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,

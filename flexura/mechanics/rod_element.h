@@ -31,8 +31,8 @@ class RodElement {
   [[nodiscard]] int size() const { return grid_.size; }
   [[nodiscard]] const RodGrid& grid() const { return grid_; }
   [[nodiscard]] double length() const { return length_; }
-  /// Returns whether tendons run straight between disks (chords). Then their forces depend on the poses of
-  /// the disks, not only on strains.
+  /// Returns whether tendons run straight between disks (as chords). Then the tendon forces depend on the
+  /// poses of the disks, not only on strains.
   [[nodiscard]] bool has_chords() const { return !grid_.disks.empty(); }
 
   /// Sets the section's undeformed length to this factor times the original one.
@@ -48,15 +48,16 @@ class RodElement {
   [[nodiscard]] const std::vector<Vector6d>& strains() const { return strain_; }
   /// Poses of the nodes, z along the rod.
   [[nodiscard]] const std::vector<Pose>& poses() const { return X_; }
-  /// Twist of each node by each mode, 6 x size().
+  /// Derivatives of the twist of each node with respect to the modes, 6 x size().
   [[nodiscard]] const std::vector<Columns>& columns() const { return A_; }
 
-  /// Returns whether the element's modes are too few for its bend between guide disks. The criterion for an
-  /// element between two disks is a highest polynomial of a bend that is not small. For a whole section it is
-  /// a distance between rod and chord that is not small relative to the tendons' distance from the backbone.
+  /// Returns whether the element's modes are too few for its bend between guide disks. An element between two
+  /// disks has too few modes if the highest polynomial of a bend is not small. A whole section has too few
+  /// modes if the distance between rod and chord is not small relative to the tendons' distance from the
+  /// backbone.
   [[nodiscard]] bool is_coarse() const;
 
-  /// Turning of a tendon between its base and the end of an element. `turned`: turning angle, rad.
+  /// Wrap angle of a tendon between its base and the end of an element. `turned`: wrap angle, rad.
   /// `direction`: its direction in the frame of the element's end. Both are zero at the base.
   struct Run {
     double turned = 0;
@@ -68,12 +69,13 @@ class RodElement {
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
     Vector6d base = Vector6d::Zero();  ///< Twist of the next section's base.
   };
-  /// Follows a tendon through the section: changes `run` from that at the section's base to that at its end.
-  /// Stores the share of the tension that friction leaves at each node, for stress(). Sections with chords
-  /// require the poses.
+  /// Follows a tendon through the section. On entry `run` refers to the section's base, on return to its end.
+  /// Stores for stress() the fraction of the tension that remains at each node because of friction. Sections
+  /// with chords require the poses.
   void rub(std::size_t tendon, double friction, Run& run);
-  /// Computes how a change dq of the modes changes the last result of rub(). Adds the effect of the change of
-  /// friction to `residual_change`. `run` is changed as in rub(). Sections with chords require the columns.
+  /// Computes the change of the last result of rub() due to a change dq of the modes. Adds the effect of the
+  /// change of friction to `residual_change`. `run` is updated as in rub(). Sections with chords require the
+  /// columns.
   void rub_change(std::size_t tendon, double friction, double tension, const Eigen::VectorXd& dq, Run& run,
                   RunChange& change, Eigen::Ref<Eigen::VectorXd> residual_change) const;
   /// Computes residual, tangent, tendon lengths and their derivatives from internal and tendon forces.
@@ -82,11 +84,11 @@ class RodElement {
   void stress(std::span<const double> tension);
   /// Adds `share` times the loads. `beyond`: wrench of all loads on distal sections. Requires the columns.
   void load(const RodLoads& loads, double share, const Vector6d& beyond);
-  /// Adds the geometric stiffness of chords and loads to the tangent. To be called last.
+  /// Adds the geometric stiffness of chords and loads to the tangent. Must be called last.
   void add_bending();
 
   /// Returns the second derivative of the section's strain energy with respect to its modes, size() x size().
-  /// It does not depend on the shape.
+  /// This derivative does not depend on the shape.
   [[nodiscard]] Eigen::MatrixXd stiffness() const;
   /// Returns minus the work of the loads without moments, J; it is 0 for loads at the base's origin. Requires
   /// the poses. Follower loads have no potential and count as dead loads.
@@ -123,8 +125,8 @@ class RodElement {
   Eigen::MatrixXd length_slopes, pull_slopes;
   /// Strain energy, J.
   double strain_energy = 0;
-  /// Shortest straight piece of a taut tendon between two disks, as a part of the undeformed length of the
-  /// rod between them; 1 without any.
+  /// Length of the shortest straight piece of a taut tendon between two disks, as a fraction of the
+  /// undeformed length of the rod between these disks. It is 1 if there is no such piece.
   double least_chord = 1;
 
  private:

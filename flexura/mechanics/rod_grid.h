@@ -22,10 +22,10 @@ struct RodGrid {
   int size = 0;  ///< Number of all modes.
 
   std::vector<double> t;          ///< Nodes, from 0 to 1.
-  std::vector<double> weight;     ///< Weights of the nodes in an integral over t; their sum is 1.
+  std::vector<double> weight;     ///< Quadrature weights of the nodes in an integral over t; the sum is 1.
   Eigen::MatrixXd at_node;        ///< Modes x nodes: value of each mode.
   Eigen::MatrixXd slope_at_node;  ///< Modes x nodes: derivative of each mode with respect to arc length, 1/m.
-  /// Nodes x nodes: integrates nodal values over t up to each node.
+  /// Matrix, nodes x nodes, that integrates nodal values over t from 0 to each node.
   Eigen::MatrixXd cumulative;
   /// Modes x intervals between nodes: the three moments (magnus_moments) of each mode in each interval.
   std::array<Eigen::MatrixXd, 3> moments;
@@ -33,12 +33,13 @@ struct RodGrid {
   std::vector<Vector6d> stiffness, rest, rest_slope;
   std::vector<std::array<Vector6d, 3>> rest_moments;  ///< Moments of the undeformed strain in the intervals.
   std::vector<double> mass_per_length;                ///< At the nodes, kg/m.
-  std::vector<std::size_t> disks;       ///< Nodes that are disks, base and end included; empty without disks.
-  std::vector<std::size_t> mass_nodes;  ///< Nodes of the section's point masses.
+  std::vector<std::size_t>
+      disks;  ///< Indices of the nodes at disks, including base and end; empty without disks.
+  std::vector<std::size_t> mass_nodes;  ///< Indices of the nodes with the section's point masses.
 
   /// Multiplies the section's original undeformed length by this factor, through its undeformed stretch.
   void stretch_rest(double factor);
-  /// Returns the index of the node at the position `place`, 0 to 1. There must be a node.
+  /// Returns the index of the node at the position `place`, 0 to 1, at which a node must exist.
   [[nodiscard]] std::size_t node_at(double place) const;
   /// Calls f(c, j) for each mode j of each strain c.
   template <typename Function>
@@ -48,8 +49,8 @@ struct RodGrid {
       for (int j = first[strain]; j < first[strain] + count[strain]; ++j) f(c, j);
     }
   }
-  /// Returns the strain for mode values q, or a moment of it. `at_rest` is the undeformed value, and `modes`
-  /// a column of `at_node` or `moments`.
+  /// Returns the strain for the mode values q, or a moment of this strain. `at_rest` is the undeformed value,
+  /// and `modes` a column of `at_node` or `moments`.
   template <typename Column>
   [[nodiscard]] Vector6d strain(const Vector6d& at_rest, const Eigen::VectorXd& q,
                                 const Column& modes) const {

@@ -9,10 +9,10 @@
 
 namespace flexura {
 
-/// One interval of a rod between two nodes. Its relative pose is X = exp(twist). The twist is the Magnus
-/// expansion (math/magnus.h) of the moments of its strain. With T = Dual and the moments' rates as slopes,
-/// results include velocities. A wrench's projection on the moments then includes its rate, which Lagrange's
-/// equations need.
+/// One interval of a rod between two nodes. The relative pose of the two nodes is X = exp(twist). The twist
+/// is the Magnus expansion (math/magnus.h) of the moments of its strain. With T = Dual, whose slopes are the
+/// rates of the moments, results include velocities. The projection of a wrench on the moments then includes
+/// the rate of this projection, which Lagrange's equations need.
 template <typename T>
 class RodInterval {
  public:
@@ -51,8 +51,8 @@ class RodInterval {
     }
     return sum;
   }
-  /// Returns the projection on the three moments of a wrench at the interval's end, in the frame of its
-  /// beginning.
+  /// Returns the projection of a wrench on the three moments. The wrench acts at the interval's end, and is
+  /// expressed in the frame of the interval's beginning.
   [[nodiscard]] std::array<Screw<T>, 3> along_moments(const Screw<T>& wrench) const {
     Screw<T> power = wrench, w = wrench;
     for (std::size_t n = 0; n < 4; ++n) {
@@ -68,7 +68,7 @@ class RodInterval {
             by_V + transposed_bracket(a1_, by_C), (1.0 / 12) * w + by_U + 2.0 * by_E};
   }
 
-  /// Returns the interval of the values, without slopes.
+  /// Returns the interval without slopes.
   template <typename Q>
   friend RodInterval<Q> still(const RodInterval<Dual<Q>>& moving);
   /// Returns the rate of the twist of the interval's end relative to its beginning, at constant rates of the

@@ -114,7 +114,7 @@ RodLayout::RodLayout(const RodChain& chain, bool rotary_inertia) : tendons(chain
 std::size_t RodLayout::element_of(const RodPlace& place) const {
   const auto found =
       std::ranges::find_if(sections, [&](const Section& section) { return section.part.holds(place); });
-  if (found == sections.end()) throw std::invalid_argument("a place outside the rod");
+  if (found == sections.end()) throw std::invalid_argument("the place is outside the rod");
   return static_cast<std::size_t>(found - sections.begin());
 }
 
@@ -123,7 +123,7 @@ std::size_t RodLayout::node_of(const RodPlace& place) const {
   const Section& section = sections[element_of(place)];
   const std::size_t at = section.grid.node_at(section.part.within(place.at));
   if (!(std::abs(section.part.of_section(section.grid.t[at]) - place.at) <= same_place))
-    throw std::invalid_argument("a place that was not asked for");
+    throw std::invalid_argument("no node is at this place");
   return section.first_node + at;
 }
 

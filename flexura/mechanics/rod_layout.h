@@ -21,9 +21,9 @@ struct RodLayout {
   /// A body at a node.
   struct Body {
     double mass = 0;  ///< kg
-    /// Centre of mass in the section's frame, m.
+    /// Centre of mass in the frame of the cross-section, m.
     Triple<double> centre{};
-    /// Inertia about the centre of mass, by rows, kg m^2.
+    /// Inertia about the centre of mass, in row-major order, kg m^2.
     std::array<Triple<double>, 3> inertia{};
   };
   /// Passage of a tendon at a node: its offset in the cross-section and the derivatives with respect to arc
@@ -41,8 +41,8 @@ struct RodLayout {
     std::vector<std::size_t> strain = {};          ///< Strain of each mode.
     Eigen::MatrixXd stiffness = {}, damping = {};  ///< modes x modes.
     std::vector<std::size_t> tendons = {};         ///< Indices of tendons that run through the section.
-    std::vector<Passage> passages = {};            ///< Tendons x nodes, one tendon after the other.
-    std::vector<std::size_t> disks = {};           ///< Nodes of the section.
+    std::vector<Passage> passages = {};            ///< Passages, tendons x nodes, stored tendon by tendon.
+    std::vector<std::size_t> disks = {};           ///< Indices of the nodes at disks.
   };
 
   /// A piece of a tendon with friction in which the tension is constant: around a node of a channel, or
@@ -59,13 +59,14 @@ struct RodLayout {
     std::size_t tendon = 0;
     double friction = 0;
     std::size_t first = 0;           ///< Index of its first piece among those of all tendons with friction.
-    std::vector<Piece> pieces = {};  ///< From the base on.
+    std::vector<Piece> pieces = {};  ///< Pieces, in the order from base to end.
   };
 
   RodLayout(const RodChain& chain, bool rotary_inertia);
 
-  /// Returns the index of the element that holds a place, and of the node there among all nodes. Throws
-  /// std::invalid_argument for a place outside the rod; for the node also if no node is there.
+  /// The following functions return the index of the element that contains a place, and the index among all
+  /// nodes of the node at a place. Both functions throw std::invalid_argument for a place outside the rod.
+  /// node_of() also throws it if no node is at the place.
   [[nodiscard]] std::size_t element_of(const RodPlace& place) const;
   [[nodiscard]] std::size_t node_of(const RodPlace& place) const;
 
@@ -78,7 +79,7 @@ struct RodLayout {
   std::size_t modes = 0, intervals = 0, nodes = 0, tendons = 0;
   std::size_t padded = 0;  ///< Number of intervals, rounded up to a multiple of an instruction's lanes.
   std::vector<Body> bodies;
-  std::vector<Body> slices;  ///< The bodies without point masses: slices of the rod alone.
+  std::vector<Body> slices;  ///< Bodies at the nodes without point masses: only the slices of the rod.
   std::vector<double> run;   ///< Length of rod that each node represents in an integral along the rod, m.
   /// 18 x padded: the three moments of the six undeformed strains.
   std::vector<double> rest;

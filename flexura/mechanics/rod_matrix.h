@@ -12,16 +12,17 @@
 
 namespace flexura {
 
-/// Matrices of a rod's modes, such as the mass matrix and the matrix of an implicit step. They are the sum
-/// over the nodes of A^T H A, plus a block for each section. A is the derivative of a node's twist by the
-/// modes, and H a symmetric 6 x 6 matrix. Systems are solved at a cost linear in the number of sections. Each
-/// section's modes are eliminated from tip to base, which leaves a 6 x 6 inertia for the proximal sections
-/// (R. Featherstone's articulated bodies). Allocates only in the constructor.
+/// Matrices of the size modes x modes, such as the mass matrix and the matrix of an implicit step. Each
+/// matrix is the sum over the nodes of A^T H A, plus a block for each section. A is the derivative of a
+/// node's twist with respect to the modes, and H a symmetric 6 x 6 matrix. Linear systems are solved at a
+/// cost linear in the number of sections. Each section's modes are eliminated from tip to base, which leaves
+/// a 6 x 6 inertia for the proximal sections (R. Featherstone's articulated bodies). Allocates only in the
+/// constructor.
 class RodMatrix {
  public:
   explicit RodMatrix(const RodLayout& layout);
 
-  /// Computes the node twists by the modes at the last placement of the rod.
+  /// Computes the derivatives of node twists with respect to the modes, at the last placement of the rod.
   void find_columns(const RodMotion<double>& motion);
 
   /// Factors d and k (`damping`, `stiffness`) of the matrix M + d (D - B_v) + k (K + K_t - B_p). M, D and K
@@ -34,18 +35,19 @@ class RodMatrix {
   /// the tendons in channels, N; null: no tendon stiffness.
   [[nodiscard]] bool factor(const RodMotion<double>& motion, const Factors& factors, const double* tensions,
                             bool is_surrounded);
-  /// Returns whether all points that have wrenches now also had them when the matrix was factored. Only for
-  /// those points the columns are known.
+  /// Returns whether all points that have wrenches now also had wrenches when the matrix was factored.
+  /// Columns are known only for these points.
   [[nodiscard]] bool has_columns_of(const RodMotion<double>& motion) const;
-  /// Adds to the generalized forces the change of the surroundings' last wrenches by changes x of the rates
-  /// and `stretch` x of the modes. Requires find_columns(), and that no wrenches are coupled
-  /// (RodSurroundings).
+  /// Adds to the generalized forces the change of the last wrenches of the surroundings. The change is due to
+  /// a change x of the rates, and a change stretch * x of the modes. Requires find_columns(), and that no
+  /// wrenches are coupled (RodSurroundings).
   void add_pull_change(const RodMotion<double>& motion, double stretch, const double* x, double* force) const;
   /// Replaces the right-hand side x by its solution.
   void solve(double* x) const;
   /// Returns the dense matrix; allocates. Requires the columns.
   [[nodiscard]] Eigen::MatrixXd dense_mass(const RodMotion<double>& motion) const;
-  /// Returns the twists of a node by the modes of all sections, 6 x modes; allocates.
+  /// Returns the derivatives of a node's twist with respect to the modes of all sections, 6 x modes;
+  /// allocates.
   [[nodiscard]] Eigen::MatrixXd node_columns(std::size_t node) const;
   /// Returns the twist of the last node caused by changes x of the modes.
   [[nodiscard]] Vector6d tip_change(const double* x) const;

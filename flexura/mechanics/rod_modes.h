@@ -20,7 +20,7 @@ struct RodModes {
 /// Returns the modes from derivatives at rest (RodDynamics::slopes). The modes are computed from a shifted
 /// inverse of A, so that slow modes are accurate to rounding although held tendons are very stiff. A fast
 /// mode has a relative error of about 1e-16 times the square of its frequency relative to the slow modes.
-/// Values are not finite if the shifted inverse does not exist.
+/// Results are not finite if the shifted inverse does not exist.
 [[nodiscard]] RodModes rod_modes(const RodDynamicsSlopes& at_rest);
 
 }  // namespace flexura

@@ -15,8 +15,8 @@
 namespace flexura {
 
 /// A rod in motion with modes q and rates v. Computes node motions, momenta p = dT/dv and generalized forces
-/// dL/dq + Q, such that dp/dt = force (Lagrange). All quantities are in the frame of the base; twists and
-/// wrenches are about its origin. S is double, or a dual number for derivatives. Allocates only in the
+/// dL/dq + Q. Lagrange's equations are dp/dt = dL/dq + Q. All quantities are in the frame of the base; twists
+/// and wrenches are about its origin. S is double, or a dual number for derivatives. Allocates only in the
 /// constructor.
 template <typename S>
 class RodMotion {
@@ -25,28 +25,29 @@ class RodMotion {
 
   explicit RodMotion(const RodLayout& layout);
 
-  /// Sets the points besides the nodes at which surroundings may act; kept by reference. Null: none.
+  /// Sets the points between nodes at which surroundings may act, by reference. Null: no such points.
   void set_points(const RodPoints* points);
 
   /// Computes poses and velocities of the nodes.
   void place(const S* q, const S* v);
-  /// The slopes of q and v in the next calls of place() are 0 outside the modes of sections `first` to
-  /// `last`. `keeps_values`: values, tensions and loads are those of the last calls of place() and pull(),
-  /// and only slopes differ. Then whatever depends on other sections alone is not computed again.
+  /// Declares that the slopes of q and v in the next calls of place() are 0 outside the modes of sections
+  /// `first` to `last`. `keeps_values`: also declares that values, tensions and loads are those of the last
+  /// calls of place() and pull(), and only slopes differ. Then results that depend only on other sections are
+  /// not recomputed.
   void vary(std::size_t first, std::size_t last, bool keeps_values) {
     first_varied_ = first, last_varied_ = last, keeps_values_ = keeps_values;
   }
-  /// If true, pull() reuses the last wrenches of the surroundings, for the same shape and rates with other
-  /// slopes.
+  /// If true, pull() reuses the last wrenches of the surroundings. Shape and rates must not have changed, but
+  /// slopes may.
   void keep_surroundings(bool keeps) { keeps_surroundings_ = keeps; }
   /// Sets the earlier friction state. `before`: friction force between each piece and the previous one, N,
-  /// for all pieces (RodLayout::pieces); kept by reference. Null: no friction. `time`: time since then, s,
-  /// during which tendons slid at the present rate.
+  /// for all pieces (RodLayout::pieces), by reference. Null: no friction. `time`: time since the earlier
+  /// state, s, in which tendons are assumed to have slid at the present rate.
   void hold(const double* before, double time) {
     held_before_ = before;
     slide_time_ = time;
   }
-  /// Sets the bristle stiffness of all pieces, N per metre of sliding; kept by reference.
+  /// Sets the bristle stiffness of all pieces, N per metre of sliding, by reference.
   void set_grip(const std::vector<double>& grip) { grip_ = grip.data(); }
   /// Computes wrenches and tendon forces at the present placement. `tensions`: tensions of all tendons at the
   /// base, N.
@@ -61,13 +62,13 @@ class RodMotion {
 
   [[nodiscard]] const std::vector<Placement<S>>& nodes() const { return X_; }
   [[nodiscard]] const std::vector<Screw<S>>& velocities() const { return V_; }
-  /// Momenta of the bodies at the nodes.
+  /// Returns the momenta of the bodies at the nodes.
   [[nodiscard]] const std::vector<Screw<S>>& momenta() const { return P_; }
-  /// Wrenches of the last surroundings with derivatives; empty without surroundings.
+  /// Returns the last wrenches of the surroundings, with derivatives; empty without surroundings.
   [[nodiscard]] const std::vector<NodePull>& pulls() const { return pulls_; }
   /// Returns all points.
   [[nodiscard]] const RodPoints* points() const { return points_; }
-  /// Returns the indices of the points that the last surroundings chose.
+  /// Returns the indices of the points that the surroundings chose last.
   [[nodiscard]] std::span<const std::size_t> chosen() const { return chosen_; }
   /// Returns the motions of the chosen points.
   [[nodiscard]] std::span<const NodeMotion> point_motions() const {
@@ -77,18 +78,18 @@ class RodMotion {
   [[nodiscard]] std::span<const NodePull> point_pulls() const {
     return {point_pulls_.data(), chosen_.size()};
   }
-  /// Parts of the intervals up to the chosen points, side by side; identity for points at nodes.
+  /// Returns the intervals from a node to each chosen point, in lanes; identity for points at nodes.
   [[nodiscard]] const std::vector<RodInterval<Dual<Number>>>& parts() const { return parts_; }
-  /// Whether wrenches at points are coupled to other points.
+  /// Returns whether wrenches at points depend on the motion of other points.
   [[nodiscard]] bool is_coupled() const { return is_coupled_; }
-  /// Returns the ties between points; clears `ties` first.
+  /// Sets `ties` to the couplings between points (PointTie).
   void find_ties(std::vector<PointTie>& ties) const {
     ties.clear();
     if (is_coupled_) touching_->tie(chosen_, point_motions(), ties);
   }
   /// Returns the motion of all points, after place(); allocates.
   [[nodiscard]] std::vector<NodeMotion> all_point_motions();
-  /// The intervals, side by side.
+  /// Returns the intervals between nodes, in lanes.
   [[nodiscard]] const std::vector<RodInterval<Dual<Number>>>& intervals() const { return intervals_; }
 
   /// Computes the generalized forces of one wrench at each node; after place().
@@ -96,10 +97,12 @@ class RodMotion {
   /// Computes the derivatives of a tendon's length with respect to all modes; after place().
   void find_length_slopes(std::size_t tendon, S* slopes);
   /// Computes minus the derivatives of the generalized forces with respect to a tendon's tension at the base.
-  /// Without friction these are the derivatives of its length. `tension`: that tension, N. Call after pull().
+  /// Without friction these are the derivatives of its length. `tension`: the tension at the base, N. Call
+  /// after pull().
   void find_pull_slopes(std::size_t tendon, double tension, double* slopes);
   /// Computes minus the derivatives of the generalized forces with respect to the relative change of the
-  /// bristle stiffness of a tendon; 0 without friction. `tension` as above. Call after pull().
+  /// bristle stiffness of a tendon; 0 without friction. `tension`: the tension at the base, N. Call after
+  /// pull().
   void find_grip_slopes(std::size_t tendon, double tension, double* slopes);
   /// Returns for each piece the friction force at its junction with the previous piece, N. The force is the
   /// tension of the previous piece minus that of this piece. Call after pull().
@@ -108,8 +111,9 @@ class RodMotion {
   /// Call after pull().
   [[nodiscard]] const std::vector<S>& slides() const { return slide_; }
 
-  /// Returns the geometric stiffness at a node of tendons in channels, per metre of rod. It is the second
-  /// derivative with respect to the node's strains, of the sum of tensions times tendon lengths.
+  /// Returns the geometric stiffness of tendons in channels at a node, per metre of rod. This stiffness is
+  /// the second derivative of the sum of tensions times tendon lengths, with respect to the strains at the
+  /// node.
   [[nodiscard]] Matrix6d tendon_stiffness(const RodLayout::Section& section, std::size_t node,
                                           const double* tensions) const;
 

@@ -10,7 +10,7 @@
 // Arithmetic of rod motions for any numbers: plain or dual.
 namespace flexura {
 
-/// Returns a constant, with slope 0.
+/// Returns a constant as a number with slope 0.
 template <typename S>
 [[nodiscard]] Triple<S> constant(const Triple<double>& a) {
   return {a.x + S{}, a.y + S{}, a.z + S{}};
@@ -24,7 +24,7 @@ template <typename S>
   return constant<S>(Triple<double>{a.x(), a.y(), a.z()});
 }
 
-/// Returns the value alone; for several equal lanes, one of them.
+/// Returns the value without slopes. For several equal lanes, returns the value of one lane.
 [[nodiscard]] inline double plain(double value) { return value; }
 [[nodiscard]] inline double plain(const Dual<Lanes>& value) { return value.value[0]; }
 template <typename S>
@@ -36,7 +36,7 @@ template <typename S>
   return (Vector6d() << plain(a.linear), plain(a.angular)).finished();
 }
 
-/// Returns one of the six components, linear part first.
+/// Returns one of the six components of a screw, linear part first.
 template <typename S>
 [[nodiscard]] S& component(Screw<S>& a, std::size_t c) {
   Triple<S>& half = c < 3 ? a.linear : a.angular;
@@ -52,7 +52,7 @@ template <typename S>
   return i == 1 ? half.y : half.z;
 }
 
-/// Returns the wrench about the origin of a force f at p.
+/// Returns the wrench, about the origin, of a force f that acts at p.
 template <typename S>
 [[nodiscard]] Screw<S> wrench_at(const Triple<S>& p, const Triple<S>& f) {
   return {f, cross(p, f)};

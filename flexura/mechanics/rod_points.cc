@@ -22,7 +22,7 @@ RodPoints::RodPoints(const RodLayout& layout, std::span<const RodPlace> places) 
   for (const RodPlace& place : places) {
     if (place.section >= layout.ends.size() || !(place.at >= 0) || !(place.at <= 1))
       throw std::invalid_argument(
-          fmt::format("a point at {} of section {}, outside the rod", place.at, place.section + 1));
+          fmt::format("the point at {} of section {} is outside the rod", place.at, place.section + 1));
     const std::size_t element = layout.element_of(place);
     const RodLayout::Section& section = layout.sections[element];
     const RodSection& from = section.part.rod;

@@ -11,15 +11,15 @@
 
 namespace flexura {
 
-/// Places of a rod between its nodes. Their motion is that of the end of a partial interval, without
-/// interpolation. They belong to a RodLayout and are evaluated only where a wrench may act.
+/// Places of a rod between its nodes. The motion of a place is computed exactly, as that of the end of a
+/// partial interval. The places belong to a RodLayout, and are evaluated only if a wrench may act there.
 struct RodPoints {
   struct Point {
-    std::size_t section = 0;   ///< Index of its element.
-    std::size_t interval = 0;  ///< Index in its element.
-    /// Index among all nodes: that of the interval's beginning, or of the point itself if it is a node.
+    std::size_t section = 0;   ///< Index of the element that contains the place.
+    std::size_t interval = 0;  ///< Index of the interval in this element.
+    /// Index among all nodes of the interval's beginning, or of the point itself if it is a node.
     std::size_t node = 0;
-    double part = 0;  ///< Part of the interval, by undeformed arc length.
+    double part = 0;  ///< Position in the interval, as a fraction of the undeformed arc length.
     bool is_node = false;
     std::size_t first_moment = 0;
   };
@@ -28,9 +28,8 @@ struct RodPoints {
   RodPoints(const RodLayout& layout, std::span<const RodPlace> places);
 
   std::vector<Point> points;
-  /// Moments for each point that is not a node, from its interval's beginning on. First come the three
-  /// moments of each of its element's modes, then those of the six undeformed strains, without driven
-  /// stretch.
+  /// Moments of the partial interval of each point that is not a node. First come the three moments of each
+  /// mode of its element, then the moments of the six undeformed strains, without driven stretch.
   std::vector<double> moments;
 };
 

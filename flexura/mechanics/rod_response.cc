@@ -57,9 +57,9 @@ Arm in_its_frame(Arm arm) {
 
 Rod fitting(const Arm& driven, const Rod& rod, const std::optional<Drive>& drive) {
   if (rod.sections.size() != driven.sections.size())
-    throw std::invalid_argument("a rod of another number of sections than its arm");
+    throw std::invalid_argument("the rod and the arm have different numbers of sections");
   if (drive && drive->tendons.size() != rod.tendons.size())
-    throw std::invalid_argument("a drive of another number of tendons than its rod");
+    throw std::invalid_argument("the drive and the rod have different numbers of tendons");
   return rod;
 }
 

@@ -20,25 +20,26 @@
 
 namespace flexura {
 
-/// Response of an arm that is an elastic rod to commands (docs/mechanics.md, "The rod as a model"). A
-/// command's bends set the displacement of each tendon to that of arcs with these bends. Without a drive, a
-/// command's stretches multiply the sections' own lengths. The shape is the chain of arcs nearest to the
-/// rod's equilibrium, by least squares of places along the rod.
+/// Response of an arm that is an elastic rod to commands (docs/mechanics.md, "The rod as a model"). The bends
+/// in a command determine the displacement of each tendon, as for arcs with these bends. Without a drive, the
+/// stretches in a command are factors on the lengths of the sections. The shape is the chain of arcs that is
+/// nearest to the rod's equilibrium, by least squares of places along the rod.
 class RodResponse : public ArmResponse {
  public:
-  /// `driven` has one arc per number of its sections' bend profiles. With a drive, displacements are those of
-  /// the drive's tendons, in addition to those of the pretension. Without a drive, they are those of the
-  /// rod's tendons. Throws std::invalid_argument for wrong numbers of sections or tendons, or an invalid rod.
-  /// Also throws it if there is no equilibrium under the pretension, or none under weight and loads without a
-  /// command. `swings`: whether the rod has inertia, so that swing() returns modes. It then must have a mass.
+  /// `driven` has one arc for each number in the bend profiles of its sections. With a drive, commands
+  /// displace the drive's tendons, in addition to the displacements of the pretension. Without a drive,
+  /// commands displace the rod's tendons. Throws std::invalid_argument for wrong numbers of sections or
+  /// tendons, or an invalid rod. Also throws it if there is no equilibrium under the pretension, or none
+  /// under weight and loads without a command. `swings`: whether the rod has inertia, so that swing() returns
+  /// modes. Then the rod must have a mass.
   RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std::optional<Drive> drive,
               bool swings = false);
   ~RodResponse() override;
 
   [[nodiscard]] ArmState shape(const ArmState& command) const override;
-  /// Computes the derivatives of the equilibrium. For commands that only take up slack, the derivatives are
-  /// those with all tendons just taut. If sections have driven lengths, they are central differences with
-  /// step `secant`.
+  /// Computes the derivatives of the equilibrium. Slack tendons count as just taut in the derivatives of
+  /// commands that only take up slack. If sections have driven lengths, the derivatives are central
+  /// differences with step `secant`.
   void slopes(const ArmState& command, Eigen::MatrixXd& by_command) const override;
   static constexpr double secant = 0.02;  ///< rad
 
@@ -47,10 +48,11 @@ class RodResponse : public ArmResponse {
   [[nodiscard]] std::vector<SwingMode> swing(const ArmState& command, std::size_t most) const override;
 
   [[nodiscard]] TendonTensions tensions(const ArmState& command) const override;
-  /// A released tendon is one that is paid out by the length of the arm.
+  /// Displacement of a released tendon: it is let out by the length of the arm.
   [[nodiscard]] std::vector<ArmState> released(const ArmState& command) const override;
 
-  /// Returns the rod's equilibrium in the frame of its base; not converged if there is none.
+  /// Returns the rod's equilibrium in the frame of its base. If there is none, the result is marked as not
+  /// converged.
   [[nodiscard]] Equilibrium equilibrium(const ArmState& command) const;
 
  private:

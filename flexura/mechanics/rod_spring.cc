@@ -14,7 +14,7 @@ std::string spring_problem(const PointSpring& spring) {
   if (!(spring.stiffness >= 0) || !std::isfinite(spring.stiffness))
     return "a spring's stiffness must be at least 0 and finite";
   if (!(spring.most > 0) || !std::isfinite(spring.most))
-    return "a spring's greatest force must be above 0 and finite";
+    return "a spring's largest force must be above 0 and finite";
   return "";
 }
 
@@ -57,7 +57,7 @@ void RodSpring::set(const std::optional<PointSpring>& spring) {
 void RodSpring::pull(std::span<const NodeMotion> nodes, std::span<const double> /*run*/,
                      std::span<NodePull> pulls) const {
   if (node_ >= nodes.size() || pulls.size() != nodes.size())
-    throw std::invalid_argument("spring: a rod of other nodes");
+    throw std::invalid_argument("spring: expected a rod with the same nodes");
   for (NodePull& pull : pulls) pull.clear();
   if (!spring_) return;
   const SpringPull at = spring_pull(*spring_, nodes[node_].pose.position);

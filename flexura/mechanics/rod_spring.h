@@ -13,7 +13,7 @@
 
 namespace flexura {
 
-/// Returns what is wrong with a spring, in words: numbers that are not finite or out of bounds. "" if it is
+/// Returns the error of a spring as text: a number that is not finite or out of bounds; "" if the spring is
 /// valid.
 [[nodiscard]] std::string spring_problem(const PointSpring& spring);
 
@@ -26,16 +26,17 @@ namespace flexura {
 struct SpringPull {
   Vector6d wrench = Vector6d::Zero();
   Matrix6d by_pose = Matrix6d::Zero();
-  /// Positive semidefinite part of -by_pose: all except the rotation of the lever arm.
+  /// Positive semidefinite part of -by_pose: all terms except the rotation of the lever arm.
   Matrix6d stiffness = Matrix6d::Zero();
 };
-/// Returns the wrench at the node whose position is `point`.
+/// Returns the wrench of a spring at a node with the position `point`.
 [[nodiscard]] SpringPull spring_pull(const PointSpring& spring, const Eigen::Vector3d& point);
 
-/// A spring on a moving rod, which can change from step to step.
+/// A spring on a moving rod. The spring can change from step to step.
 class RodSpring final : public RodSurroundings {
  public:
-  /// Attaches the spring to the node of `chain` that is nearest to `place`. `chain` is that of RodDynamics.
+  /// Attaches the spring to the node of `chain` that is nearest to `place`. `chain`: the chain of
+  /// RodDynamics.
   RodSpring(const RodChain& chain, const RodPlace& place);
 
   /// Sets the spring, whose `section` and `at` are ignored; std::nullopt: no force. Throws

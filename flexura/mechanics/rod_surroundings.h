@@ -33,16 +33,16 @@ struct NodePull {
   Vector6d wrench = Vector6d::Zero();
   Matrix6d by_pose = Matrix6d::Zero();
   Matrix6d by_twist = Matrix6d::Zero();
-  /// Whether there is no wrench: all members above are 0.
+  /// Whether wrench and derivatives are 0.
   bool is_idle = false;
-  /// The symmetric parts of -by_pose and -by_twist may have negative eigenvalues (friction, geometry), which
-  /// prevents a factorisation of a step's matrix. If `is_held`, that matrix uses the semidefinite `stiffness`
-  /// and `damping` instead. Then a step needs more iterations for the same solution.
+  /// Friction and geometry may cause negative eigenvalues of the symmetric parts of -by_pose and -by_twist.
+  /// Then the matrix of a step may not be positive definite. If `is_held`, this matrix uses the semidefinite
+  /// `stiffness` and `damping` instead. The solution is the same, but needs more iterations.
   bool is_held = false;
   Matrix6d stiffness = Matrix6d::Zero();
   Matrix6d damping = Matrix6d::Zero();
-  /// Whether a part of the wrench depends on the motion of other points (couple(), tie()). That part is
-  /// included in `wrench` only.
+  /// Whether a part of the wrench depends on the motion of other points (couple(), tie()). This part is
+  /// included in `wrench`, but not in the other members.
   bool is_coupled = false;
 
   /// Removes the wrench.
@@ -63,7 +63,8 @@ struct PointCoupling {
   Matrix6d by_pose = Matrix6d::Zero(), by_twist = Matrix6d::Zero();
 };
 
-/// Coupling of several points. Their relative velocity is the sum of rows[i] times the twist of points[i].
+/// Coupling of several points of a rod by a spring and a damper. The relative velocity of the points is the
+/// sum of rows[i] times the twist of points[i].
 struct PointTie {
   static constexpr std::size_t most = 5;
   std::array<std::size_t, most> points{};  ///< Indices among the chosen points.
@@ -72,14 +73,15 @@ struct PointTie {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero(), damping = Eigen::Matrix3d::Zero();
 };
 
-/// External wrenches on a rod in motion: contact, drag, springs. They act at the rod's nodes and at points
-/// between them. Points cost nothing unless they are chosen.
+/// External wrenches on a rod in motion: contact, drag, springs. The wrenches act at the rod's nodes and at
+/// points between nodes. Points that are not chosen need no computing time.
 class RodSurroundings {
  public:
   virtual ~RodSurroundings() = default;
-  /// Computes wrenches at all nodes, from the base on. The last node of a section and the first of the next
-  /// are at one place, and both are included. `run`: length of rod that each node represents in an integral
-  /// along the rod, m. Must set all of `pulls`. Must not allocate memory if steps must not.
+  /// Computes wrenches at all nodes, from the base on. The last node of a section and the first node of the
+  /// next section are at the same place, but are separate nodes. `run`: length of rod that each node
+  /// represents in an integral along the rod, m. Must set all elements of `pulls`. If steps must not allocate
+  /// memory, this function must not either.
   virtual void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
                     std::span<NodePull> pulls) const = 0;
 
@@ -91,14 +93,14 @@ class RodSurroundings {
   /// wrench.
   virtual void choose(std::span<const NodeMotion> /*nodes*/, std::span<const double> /*lengths*/,
                       std::vector<std::size_t>& /*chosen*/) const {}
-  /// Computes wrenches at the chosen points. Must set all of `pulls`.
+  /// Computes wrenches at the chosen points. Must set all elements of `pulls`.
   virtual void pull_points(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                            std::span<NodePull> /*pulls*/) const {}
-  /// If wrenches are coupled, appends all their derivatives, also those with respect to the motion of the
-  /// same point.
+  /// If wrenches at several points are coupled, appends all derivatives of these wrenches, including those
+  /// with respect to the motion of the same point.
   virtual void couple(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                       std::vector<PointCoupling>& /*couplings*/) const {}
-  /// If wrenches are coupled, appends the ties for a step's matrix.
+  /// If wrenches at several points are coupled, appends their couplings, which are terms of a step's matrix.
   virtual void tie(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                    std::vector<PointTie>& /*ties*/) const {}
 };

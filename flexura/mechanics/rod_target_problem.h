@@ -11,8 +11,9 @@
 
 namespace flexura {
 
-/// Deviation r of a rod under tensions x from a target. x is in units of `unit` N, r in lengths of the rod.
-/// Each evaluation is an equilibrium, solved from the nearest earlier one, with its exact derivatives.
+/// Deviation r of a rod from a target, as a function of the tensions x. x is in units of `unit` N, r in
+/// lengths of the rod. Each evaluation computes an equilibrium and its exact derivatives, starting from the
+/// nearest earlier equilibrium.
 class RodTargetProblem final : public BoundedProblem {
  public:
   /// `most`: maximum of each tension, N. Tendons with maximum 0 are omitted.
@@ -23,11 +24,12 @@ class RodTargetProblem final : public BoundedProblem {
   void linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) override;
   [[nodiscard]] bool is_met(const Eigen::VectorXd& r) const override;
 
-  /// Sets where the next search begins: at `near`, or at the undeformed rod if `near` did not converge.
+  /// Sets the start of the next search: `near`, or the undeformed rod if `near` did not converge.
   void begin(const Equilibrium& near);
-  /// Returns the equilibrium at x, solved from `near`; r and J as in linearise().
+  /// Returns the equilibrium at x, computed from `near`. Sets r and J as in linearise().
   Equilibrium at(const Eigen::VectorXd& x, const Equilibrium& near, Eigen::VectorXd& r, Eigen::MatrixXd& J);
-  /// Returns from r the largest distance of a place, m, and (angle_error) the angle, rad.
+  /// The following functions return the largest distance of a place, m, and the angle error, rad, that belong
+  /// to r.
   [[nodiscard]] double position_error(const Eigen::VectorXd& r) const;
   [[nodiscard]] double angle_error(const Eigen::VectorXd& r) const;
 

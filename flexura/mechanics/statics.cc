@@ -39,7 +39,7 @@ const char* words(StaticsEnd end) {
     case StaticsEnd::bad_input:
       return "bad input";
     case StaticsEnd::no_equilibrium:
-      return "no equilibrium found on the way from no load";
+      return "no equilibrium found while the load increased from zero";
     case StaticsEnd::disks_meet:
       return "no equilibrium: the tendons pull two guide disks together";
     case StaticsEnd::out_of_steps:
@@ -70,24 +70,27 @@ RodStatics::RodStatics(Rod rod, std::span<const RodPlace> places) : chain_(std::
 std::string RodStatics::input_problem() const {
   const auto count = chain_.tendons();
   const auto &tensions = input_.tensions, &displacements = input_.displacements;
-  if (!tensions.empty() && !displacements.empty()) return "tensions and displacements: expected one of them";
+  if (!tensions.empty() && !displacements.empty())
+    return "both tensions and displacements are given: expected only one of them";
   for (const auto& [name, list] :
        {std::pair{"tensions", &tensions}, std::pair{"displacements", &displacements}}) {
     if (!list->empty() && list->size() != count)
-      return fmt::format("{} {} given: expected {}, one a tendon", list->size(), name, count);
-    if (!all_finite(*list)) return fmt::format("{} that are not finite", name);
+      return fmt::format("{} {} given: expected {}, one per tendon", list->size(), name, count);
+    if (!all_finite(*list)) return fmt::format("{} must be finite", name);
   }
   if (std::ranges::any_of(tensions, [](double tension) { return tension < 0; }))
-    return "a tension below 0: a tendon does not push";
+    return "a tension is below 0, but tendons cannot push";
   if (!loads_.gravity.allFinite() || !loads_.per_length.allFinite())
-    return "gravity or a load that is not finite";
+    return "gravity and loads must be finite";
   for (const EndLoad& end : loads_.ends) {
-    if (!end.force.allFinite() || !end.moment.allFinite()) return "a load that is not finite";
-    if (end.section >= chain_.rod().sections.size()) return "a load at a section that the rod has not";
+    if (!end.force.allFinite() || !end.moment.allFinite()) return "loads must be finite";
+    if (end.section >= chain_.rod().sections.size())
+      return "a load acts on a section that the rod does not have";
   }
   for (const PointSpring& spring : loads_.springs) {
     if (std::string problem = spring_problem(spring); !problem.empty()) return problem;
-    if (spring.section >= chain_.rod().sections.size()) return "a spring at a section that the rod has not";
+    if (spring.section >= chain_.rod().sections.size())
+      return "a spring acts on a section that the rod does not have";
   }
   return "";
 }

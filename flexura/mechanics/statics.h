@@ -15,7 +15,7 @@ namespace flexura {
 
 /// Input of a rod's tendons. Each list has one number per tendon, or is empty.
 struct TendonInput {
-  std::vector<double> tensions = {};  ///< N, at the base; >= 0.
+  std::vector<double> tensions = {};  ///< Tensions at the base, N; >= 0.
   /// Length of each tendon pulled in at the base, m, from where it is just taut on the undeformed rod. A
   /// tendon is slack if more of it is let out than the rod takes up.
   std::vector<double> displacements = {};
@@ -24,13 +24,16 @@ struct TendonInput {
 /// How a search for an equilibrium ended.
 enum class StaticsEnd {
   converged,
-  bad_input,  ///< A number that is not finite, a tension below 0, a list of wrong length.
-  /// The load path diverged before full load, or the rod would have to be compressed to a negative length.
+  bad_input,  ///< The input is invalid: a number is not finite, a tension is below 0, or a list has a wrong
+              ///< length.
+  /// No equilibrium: the load path diverged before full load, or the rod would be compressed to a negative
+  /// length.
   no_equilibrium,
-  /// The tendons pull two guide disks together: the rod buckles between them and nothing holds it but the
-  /// contact of the disks, which is not modelled.
+  /// The tendons pull two guide disks together. The rod buckles between the disks, and only their contact,
+  /// which is not modelled, could hold it.
   disks_meet,
-  out_of_steps,  ///< Within the limit on steps, neither an equilibrium nor an end of the path was found.
+  out_of_steps,  ///< Within the limit on the number of steps, neither an equilibrium nor the end of the load
+                 ///< path was found.
 };
 /// Returns a description for users.
 [[nodiscard]] const char* words(StaticsEnd end);
@@ -47,17 +50,17 @@ struct Equilibrium {
   /// Whether other equilibria were detected: the path branched or turned, or the rod descended to another
   /// equilibrium.
   bool ambiguous = false;
-  /// Section whose strain modes are too few for the bend between its guide disks, as far as the modes show.
-  /// Its tip may be wrong by more than 1e-3 of the rod's length.
+  /// Section that has too few strain modes for the bend between its guide disks. The error of the tip may
+  /// exceed 1e-3 of the rod's length.
   std::optional<std::size_t> coarse_section = {};
   int iterations = 0;                  ///< Number of linear systems solved.
   Eigen::VectorXd q;                   ///< The strain modes (RodChain).
-  std::vector<double> tensions;        ///< N, at the base; 0 for slack tendons.
+  std::vector<double> tensions;        ///< Tensions at the base, N; 0 for slack tendons.
   std::vector<double> tendon_lengths;  ///< Path lengths through the rod, from base to end, m.
   std::vector<double>
       /// Length pulled in at the base, m; for a slack tendon, the displacement at which it becomes taut.
       displacements;
-  double strain_energy = 0;  ///< J
+  double strain_energy = 0;  ///< Strain energy, J.
   Pose tip;                  ///< X_BT
 
   [[nodiscard]] bool converged() const { return end == StaticsEnd::converged; }
@@ -72,35 +75,38 @@ struct EquilibriumSlopes {
   Eigen::MatrixXd q_by_tip;           ///< size() x 6: by force and moment at the tip, in the base's frame.
   Eigen::MatrixXd
       tip_by_input;  ///< 6 x tendons: change of the tip's position and rotation, in the base's frame.
-  /// Compliance: change of the tip's position and rotation by force and moment at the tip.
+  /// Compliance: change of the tip's position and rotation with respect to force and moment at the tip.
   Eigen::Matrix<double, 6, 6> tip_by_tip;
-  /// Change of the tip's position and rotation by parameters, 6 x 5 sections. Each section's parameters are
-  /// relative changes of its stiffness against shear, stretch, bends and twist, and of its mass per length.
+  /// Derivative of the tip's position and rotation with respect to parameters, 6 x (5 sections). Each
+  /// section's parameters are relative changes of its stiffness against shear, stretch, bends and twist, and
+  /// of its mass per length.
   Eigen::MatrixXd tip_by_parameters;
-  Eigen::MatrixXd q_by_parameters;  ///< size() x 5 sections, by the same parameters.
+  Eigen::MatrixXd
+      q_by_parameters;  ///< Derivatives of q with respect to these parameters, size() x (5 sections).
 };
 
 /// Solves rods for equilibrium: minima of their energy in reduced strains (F. Boyer, F. Renda et al.,
-/// geometric variable strain). Newton's method follows the load path from zero load. Where the path ends
-/// before full load, the rod descends the energy from its last stable shape (RodDescent).
+/// geometric variable strain). Newton's method follows the load path from zero load. If the path ends before
+/// full load, the rod moves from its last stable shape to a minimum of the energy (RodDescent).
 class RodStatics {
  public:
-  /// Parameters and errors as RodChain.
+  /// Parameters and exceptions as in RodChain.
   explicit RodStatics(Rod rod, std::span<const RodPlace> places = {});
 
-  /// Sets length factors as RodChain::stretch_rest, from the next solution on. Displacements still count from
+  /// Sets length factors as RodChain::stretch_rest, from the next solution on. Displacements still refer to
   /// the original rod.
   void stretch_rest(std::span<const double> factors);
   /// Solves from the undeformed rod.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads);
   /// Solves from a nearby equilibrium, or from the undeformed rod if that does not converge directly.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads, const Equilibrium& near);
-  /// Returns the equilibrium that a rod with the shape of `near` reaches. It is the nearby one if that is
-  /// stable, otherwise the one at the end of the descent from `near`. Starts from the undeformed rod if
-  /// `near` did not converge. Returns an unstable equilibrium only if no descent from it found a stable one.
+  /// Returns the equilibrium that a rod with the shape of `near` reaches. If the nearby equilibrium is
+  /// stable, it is the result. Otherwise the result is the equilibrium at the end of the descent from `near`.
+  /// Starts from the undeformed rod if `near` did not converge. Returns an unstable equilibrium only if no
+  /// descent from it found a stable one.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads,
                                    const Equilibrium& near);
-  /// Settles from the undeformed rod.
+  /// Like settle() with the undeformed rod as start.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads);
 
   /// Treatment of slack tendons in slopes(). `hangs`: they have no effect. `is_taut`: they are just taut and

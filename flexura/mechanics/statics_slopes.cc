@@ -10,11 +10,11 @@
 namespace flexura {
 
 EquilibriumSlopes RodStatics::slopes(Slack slack) {
-  if (!is_solved_) throw std::logic_error("slopes of an equilibrium that was not found");
+  if (!is_solved_) throw std::logic_error("no equilibrium was found, so there are no derivatives");
   const Eigen::Index n = chain_.size(), count = static_cast<Eigen::Index>(pulls_.size());
   chain_.balance(at_, pulls_, loads_, 1);
   chain_.place_with_columns(at_);
-  if (!chain_.factor()) throw std::runtime_error("an equilibrium with a singular derivative");
+  if (!chain_.factor()) throw std::runtime_error("the derivative at the equilibrium is singular");
   const Eigen::MatrixXd lengths_by_q = chain_.length_slopes().transpose();
   const std::vector<RodElement>& elements = chain_.elements();
   RodElement::Columns J(6, n);

@@ -182,14 +182,14 @@ TEST(Statics, RefusesWhatIsNoInput) {
     EXPECT_EQ(at.end, StaticsEnd::bad_input);
     return at.problem;
   };
-  EXPECT_EQ(problem({.tensions = {1, 0, 0, 0, 0, -1}}, {}), "a tension below 0: a tendon does not push");
-  EXPECT_EQ(problem({.tensions = {1, 0, 0, 0, 0, nan}}, {}), "tensions that are not finite");
-  EXPECT_EQ(problem({.displacements = {1}}, {}), "1 displacements given: expected 6, one a tendon");
+  EXPECT_EQ(problem({.tensions = {1, 0, 0, 0, 0, -1}}, {}), "a tension is below 0, but tendons cannot push");
+  EXPECT_EQ(problem({.tensions = {1, 0, 0, 0, 0, nan}}, {}), "tensions must be finite");
+  EXPECT_EQ(problem({.displacements = {1}}, {}), "1 displacements given: expected 6, one per tendon");
   EXPECT_EQ(problem({.tensions = {0, 0, 0, 0, 0, 0}, .displacements = {0, 0, 0, 0, 0, 0}}, {}),
-            "tensions and displacements: expected one of them");
-  EXPECT_EQ(problem({}, {.gravity = {0, nan, 0}}), "gravity or a load that is not finite");
-  EXPECT_EQ(problem({}, {.ends = {{.section = 0, .force = {nan, 0, 0}}}}), "a load that is not finite");
-  EXPECT_EQ(problem({}, {.ends = {{.section = 2}}}), "a load at a section that the rod has not");
+            "both tensions and displacements are given: expected only one of them");
+  EXPECT_EQ(problem({}, {.gravity = {0, nan, 0}}), "gravity and loads must be finite");
+  EXPECT_EQ(problem({}, {.ends = {{.section = 0, .force = {nan, 0, 0}}}}), "loads must be finite");
+  EXPECT_EQ(problem({}, {.ends = {{.section = 2}}}), "a load acts on a section that the rod does not have");
   Rod rod = two_section_robot();
   rod.sections[1].youngs_modulus = 0;
   rod.tendons[0].section = 2;
@@ -200,7 +200,7 @@ TEST(Statics, RefusesWhatIsNoInput) {
     EXPECT_STREQ(
         error.what(),
         "section 2: Young's modulus and shear modulus must be above 0; tendon 1: ends at a section that "
-        "the rod has not");
+        "the rod does not have");
   }
 }
 

@@ -16,11 +16,11 @@ constexpr double let_out = -1e6;
 
 Surroundings::Surroundings(std::vector<const RodSurroundings*> parts) : parts_(std::move(parts)) {
   if (std::ranges::any_of(parts_, [](const RodSurroundings* part) { return part == nullptr; }))
-    throw std::invalid_argument("surroundings: a part that is not there");
+    throw std::invalid_argument("surroundings: a pointer is null");
   for (const RodSurroundings* part : parts_) {
     if (part->points().empty()) continue;
     if (with_points_ != nullptr)
-      throw std::invalid_argument("surroundings: two parts that pull at points between nodes");
+      throw std::invalid_argument("surroundings: only one part may act at points between nodes");
     with_points_ = part;
   }
 }
@@ -69,7 +69,8 @@ TendonInput after_breaks(TendonInput input, std::span<const TendonBreak> breaks,
     for (std::vector<double>* list : {&input.tensions, &input.displacements}) {
       if (list->empty()) continue;
       if (each.tendon >= list->size())
-        throw std::invalid_argument(fmt::format("tendon {} breaks, of {}", each.tendon + 1, list->size()));
+        throw std::invalid_argument(
+            fmt::format("tendon {} breaks, but there are only {} tendons", each.tendon + 1, list->size()));
       (*list)[each.tendon] = list == &input.tensions ? 0.0 : let_out;
     }
   }

@@ -17,7 +17,8 @@ class Surroundings final : public RodSurroundings {
   /// Not thread-safe.
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
             std::span<NodePull> pulls) const override;
-  /// Returns the points of the only part that has any. The following functions use the same part.
+  /// Returns the points of the only surroundings that have points between nodes. The following functions use
+  /// the same surroundings.
   [[nodiscard]] std::span<const RodPlace> points() const override;
   void choose(std::span<const NodeMotion> nodes, std::span<const double> lengths,
               std::vector<std::size_t>& chosen) const override;
@@ -34,15 +35,15 @@ class Surroundings final : public RodSurroundings {
   mutable std::vector<NodePull> one_;
 };
 
-/// A tendon that breaks, and when.
+/// A tendon that breaks, with the time of the break.
 struct TendonBreak {
   std::size_t tendon = 0;
   double time = 0;  ///< s
 };
 
-/// Returns `input` as it is at `time` (s) after all `breaks` up to then. A broken tendon has tension 0, or a
-/// displacement at which it is always slack. An empty input stays empty. Throws std::invalid_argument if a
-/// break names a tendon that `input` does not have.
+/// Returns `input` changed by all `breaks` up to `time`, s. A broken tendon has tension 0, or a displacement
+/// at which it is always slack. An empty input stays empty. Throws std::invalid_argument if a break names a
+/// tendon that `input` does not have.
 [[nodiscard]] TendonInput after_breaks(TendonInput input, std::span<const TendonBreak> breaks, double time);
 
 }  // namespace flexura

@@ -52,8 +52,8 @@ class Actuation {
   /// bend as `shape`. Throws std::invalid_argument if the shape does not have one bend and one stretch per
   /// arc.
   [[nodiscard]] ArmState command(const ArmState& shape) const;
-  /// Computes the Jacobian of the shape with respect to the command, at a command. It has rows (bend_x,
-  /// bend_y, stretch) for each arc and columns (bend_x, bend_y, stretch) for each section. Resizes
+  /// Computes the Jacobian of the shape with respect to the command, at a command. The Jacobian has rows
+  /// (bend_x, bend_y, stretch) for each arc and columns (bend_x, bend_y, stretch) for each section. Resizes
   /// `by_command` if needed. Throws std::invalid_argument if the command does not have one bend and one
   /// stretch per section.
   void slopes(const ArmState& command, Eigen::MatrixXd& by_command) const;

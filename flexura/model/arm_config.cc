@@ -57,7 +57,7 @@ const Table<Section>& fields_of(const Section*) {
   static const auto table =
       Table<Section>("section", "One independently bent part of the arm.")
           .field("length", &Section::length,
-                 {.meaning = "Arc length of the section's centerline at stretch 1.",
+                 {.meaning = "Length of the section's backbone at stretch 1.",
                   .unit = Unit::metre,
                   .range = size_range,
                   .required = true})
@@ -68,7 +68,7 @@ const Table<Section>& fields_of(const Section*) {
                .range = size_range,
                .one_for_all = true})
           .field("max_bend", &Section::max_bend,
-                 {.meaning = "Largest bend angle of the section: twice its arching.",
+                 {.meaning = "Largest bend angle of the section (twice its largest arching).",
                   .unit = Unit::radian,
                   .range = above(0),
                   .default_text = "no limit"})
@@ -123,7 +123,7 @@ const Table<ShapeConfig>& fields_of(const ShapeConfig*) {
                .range = bend_range,
                .default_text = "not set"})
           .field("stretches", &ShapeConfig::stretches,
-                 {.meaning = "Factor on the length of each section.",
+                 {.meaning = "Factor on the length of each section, one per section.",
                   .range = above_up_to(0, 100),
                   .default_text = "1 each"});
   return table;
@@ -156,7 +156,8 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
   static const auto table =
       Table<ArmConfig>("arm", "The arm: sections, base, initial shape and mechanical model.")
           .field("kind", &ArmConfig::kind,
-                 {.meaning = "Bending in the XOY plane only, as in the paper, or in any direction."})
+                 {.meaning = "`planar`: the arm bends only in the XOY plane, as in the paper. `spatial`: the "
+                             "arm bends in any direction."})
           .field("base", &ArmConfig::base, {.meaning = "Pose of the base."})
           .field("initial", &ArmConfig::initial, {.meaning = "Initial shape."})
           .field("section", &ArmConfig::section,
@@ -164,16 +165,16 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
                   .count = {1, max_sections},
                   .required = true})
           .field("look", &ArmConfig::look, {.meaning = "Appearance in the cameras' pictures."})
-          .field("model", &ArmConfig::mechanics,
-                 {.meaning =
-                      "Model of the arm. `kinematic`: shapes follow commands exactly. `static`: sections are "
-                      "elastic rods in equilibrium with tendons, gravity and loads; each needs a material. "
-                      "`dynamic`: the rods have inertia and oscillate. Tasks use their equilibrium, and "
-                      "servos also their slowest modes. A model in [truth.arm] applies only to the simulated "
-                      "arm; tasks use the model of [arm]."})
+          .field(
+              "model", &ArmConfig::mechanics,
+              {.meaning = "Model of the arm. `kinematic`: shapes follow commands exactly. `static`: sections "
+                          "are elastic rods in equilibrium with tendons, gravity and loads; each needs a "
+                          "material. `dynamic`: the rods have inertia and oscillate. Tasks use the "
+                          "equilibrium of the rods, and servos also their slowest vibration modes. A model "
+                          "in [truth.arm] applies only to the simulated arm; tasks use the model of [arm]."})
           .field("gravity", &ArmConfig::gravity,
-                 {.meaning = "Gravity in the world's frame, X, Y, Z: [0, -9.81, 0] if +Y is up. Affects only "
-                             "elastic rods.",
+                 {.meaning = "Gravity in the world's frame: X, Y, Z; [0, -9.81, 0] if +Y is up. Gravity "
+                             "affects only elastic rods.",
                   .unit = Unit::metre_per_second_squared,
                   .range = between(-1e6, 1e6)})
           .field("tendon", &ArmConfig::tendon,
@@ -194,7 +195,7 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
                              "undamped arm.",
                   .range = between(0, 1)})
           .field("contact", &ArmConfig::contact,
-                 {.meaning = "Contact of a dynamic arm with obstacles and with itself.",
+                 {.meaning = "Contacts of a dynamic arm with obstacles and with itself.",
                   .default_text = "no contact"})
           .field("drag", &ArmConfig::drag, {.meaning = "Fluid around a dynamic arm.", .default_text = "none"})
           .field("payload", &ArmConfig::payload,

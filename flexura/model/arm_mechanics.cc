@@ -17,10 +17,10 @@ constexpr double rounding = 1e-9;
 constexpr std::size_t max_coefficients = 20;
 
 Spec route(const char* direction) {
-  return {.meaning =
-              fmt::format("Offset towards {}, m, in addition to that by `radius` and `angle`. The numbers "
-                          "are coefficients of a polynomial in the unstretched arc length from the base, m.",
-                          direction),
+  return {.meaning = fmt::format(
+              "Offset towards {}, m, added to the position given by `radius` and `angle`. The numbers "
+              "are coefficients of a polynomial in the unstretched arc length from the base, m.",
+              direction),
           .range = between(-1e9, 1e9),
           .count = {0, max_coefficients},
           .default_text = "0"};
@@ -127,18 +127,19 @@ const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*) {
           .field("x", &TendonRouteConfig::x, route("x"))
           .field("y", &TendonRouteConfig::y, route("y"))
           .field("compliance", &TendonRouteConfig::compliance,
-                 {.meaning = "Elongation per newton of tension, m/N. It has an effect if tendon "
-                             "displacements are commanded.",
+                 {.meaning = "Elongation of the tendon per newton of tension, m/N. The compliance affects "
+                             "only commands of tendon displacements.",
                   .range = between(0, 1e6)})
           .field("friction", &TendonRouteConfig::friction,
-                 {.meaning = "Coulomb friction coefficient mu along the tendon. The fraction exp(-mu theta) "
-                             "of the tension remains after a total turning angle theta from the base, rad.",
+                 {.meaning = "Coulomb friction coefficient mu along the tendon. After a total wrap angle "
+                             "theta from the base (rad), the fraction exp(-mu theta) of the tension remains.",
                   .range = between(0, 10)})
-          .field("breaks_at", &TendonRouteConfig::breaks_at,
-                 {.meaning = "Time at which the tendon breaks. Afterwards its tension is 0.",
-                  .unit = Unit::second,
-                  .range = between(0, 1e9),
-                  .default_text = "never"});
+          .field(
+              "breaks_at", &TendonRouteConfig::breaks_at,
+              {.meaning = "Time at which the tendon breaks. After the break, the tension of the tendon is 0.",
+               .unit = Unit::second,
+               .range = between(0, 1e9),
+               .default_text = "never"});
   return table;
 }
 
@@ -155,7 +156,7 @@ const Table<LoadConfig>& fields_of(const LoadConfig*) {
                  {.meaning = "Moment in the world's frame, N m: X, Y, Z.", .range = between(-1e9, 1e9)})
           .field("following", &LoadConfig::following,
                  {.meaning = "Whether force and moment are given in the frame of the section's end (z along "
-                             "the backbone), and rotate with it."});
+                             "the backbone) and rotate with this frame."});
   return table;
 }
 

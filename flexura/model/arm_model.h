@@ -19,8 +19,8 @@ class ArmModel {
   ArmModel(const Arm& driven, const Actuation& actuation, const Arm& shaped)
       : driven_(driven), actuation_(actuation), shaped_(shaped) {}
 
-  /// Returns the arm in terms of the sections that the drives bend. Its states, the commands, have one bend
-  /// per section.
+  /// Returns the arm in terms of the sections that the drives bend. The states of this arm are the commands,
+  /// which have one bend per section.
   [[nodiscard]] const Arm& driven() const { return driven_; }
   /// Returns the arm with one section per arc. Its states are shapes.
   [[nodiscard]] const Arm& shaped() const { return shaped_; }

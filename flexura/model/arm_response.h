@@ -8,8 +8,8 @@
 
 namespace flexura {
 
-/// A mode of an arm's oscillation about its equilibrium. Its coordinate z satisfies z'' + 2 damping frequency
-/// z' + frequency^2 z = kick . u'', where u is the command.
+/// A mode of an arm's oscillation about its equilibrium. The coordinate z of the mode satisfies z'' + 2
+/// damping frequency z' + frequency^2 z = kick . u'', where u is the command.
 struct SwingMode {
   double frequency = 0;  ///< Undamped angular frequency, rad/s.
   double damping = 0;    ///< Damping ratio.
@@ -39,8 +39,8 @@ class ArmResponse {
   /// arm has no equilibrium. Throws std::invalid_argument if the command does not have one bend and one
   /// stretch per section.
   [[nodiscard]] virtual ArmState shape(const ArmState& command) const = 0;
-  /// Computes the Jacobian of the shape with respect to the command, at a command. It has rows (bend_x,
-  /// bend_y, stretch) for each arc and columns (bend_x, bend_y, stretch) for each section. Resizes
+  /// Computes the Jacobian of the shape with respect to the command, at a command. The Jacobian has rows
+  /// (bend_x, bend_y, stretch) for each arc and columns (bend_x, bend_y, stretch) for each section. Resizes
   /// `by_command` if needed. Entries are NaN if the arm has no equilibrium. Throws std::invalid_argument if
   /// the command does not have one bend and one stretch per section.
   virtual void slopes(const ArmState& command, Eigen::MatrixXd& by_command) const = 0;

@@ -49,7 +49,7 @@ struct StepperMotor {
   /// Returns the torque, N m, above which the motor loses steps at a speed, rad/s.
   [[nodiscard]] double pull_out_torque(double speed) const;
   /// Returns the number of microsteps between positions at which the rotor can lock to the windings' field.
-  /// It is one turn of the field, which is two full steps per phase.
+  /// This number corresponds to one turn of the field, which is two full steps per phase.
   [[nodiscard]] double field_turn() const { return static_cast<double>(2 * phases * microsteps); }
 };
 
@@ -84,7 +84,8 @@ struct Drive {
   /// Number of equal pieces into which guide disks divide each section. Tendons are straight between disks.
   /// Default: tendons run in a continuous channel.
   std::optional<std::int64_t> disks;
-  std::size_t axes_per_controller = 4;  ///< Axes per controller; > 0. It only affects the names of axes.
+  std::size_t axes_per_controller =
+      4;  ///< Axes per controller; > 0. This number only affects the names of axes.
   /// Tension of each tendon of an elastic arm if all motors are at position 0 and the arm has no other loads,
   /// N; >= 0.
   double pretension = 0;

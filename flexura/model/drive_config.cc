@@ -88,13 +88,14 @@ Table<StepperMotor>& add_limits(Table<StepperMotor>& table) {
               .range = above(0),
               .default_text = "no limit"})
       .field("max_position", &StepperMotor::max_position,
-             {.meaning = "Largest position to either side of the straight, unstretched arm, in microsteps.",
+             {.meaning = "Largest motor position in both directions, in microsteps. Position 0 is the "
+                         "straight, unstretched arm.",
               .range = above(0),
               .default_text = "no limit"})
       .field("pull_out", &StepperMotor::pull_out,
-             {.meaning =
-                  "Pull-out torque as pairs [speed in rad/s, torque in N m], in order of speed, with linear "
-                  "interpolation. The motor loses steps if a tendon of an elastic arm needs more torque.",
+             {.meaning = "Pull-out torque as pairs [speed in rad/s, torque in N m], in the order of speed. "
+                         "Between the pairs it is interpolated linearly. If a tendon of an elastic arm needs "
+                         "more torque, the motor loses steps.",
               .range = between(0, 1e9),
               .count = {1, 1000},
               .default_text = "no limit"});
@@ -133,14 +134,14 @@ const Table<Spool>& fields_of(const Spool*) {
   static const auto table =
       Table<Spool>("spool", "Spool that winds a tendon's cable, and gear between motor and spool.")
           .field("radius", &Spool::radius,
-                 {.meaning = "Constant distance from the spool's axis to the middle of the cable.",
+                 {.meaning = "Constant distance of the cable's middle from the spool's axis.",
                   .unit = Unit::metre,
                   .range = above_up_to(0, 1e3)})
           .field("gear", &Spool::gear,
                  {.meaning = "Gear ratio: motor turns per spool turn.", .range = above_up_to(0, 1e6)})
           .field("backlash", &Spool::backlash,
-                 {.meaning = "Backlash between motor and spool, measured at the spool: rotation without "
-                             "effect on the cable after a reversal.",
+                 {.meaning = "Backlash between motor and spool, as an angle of the spool: after a reversal, "
+                             "the first rotation by this angle does not move the cable.",
                   .unit = Unit::radian,
                   .range = between(0, 10)});
   return table;
@@ -181,17 +182,20 @@ const Table<TendonConfig>& fields_of(const TendonConfig*) {
 const Table<DriveConfig>& fields_of(const DriveConfig*) {
   static const auto table =
       Table<DriveConfig>("drive", "Tendon drive of the arm: spools turned by stepper motors.")
-          .field("radius", &DriveConfig::radius,
-                 {.meaning = "Distance from the backbone for tendons without a `radius` of their own.",
-                  .unit = Unit::metre,
-                  .range = above_up_to(0, 1e3)})
+          .field(
+              "radius", &DriveConfig::radius,
+              {.meaning =
+                   "Distance of the tendons from the backbone. A `radius` of a single tendon overrides it.",
+               .unit = Unit::metre,
+               .range = above_up_to(0, 1e3)})
           .field("disks", &DriveConfig::disks,
                  {.meaning = "Number of equal pieces into which guide disks divide each section. Tendons are "
                              "straight between disks.",
                   .range = between(1, 1e6),
                   .default_text = "none: a continuous channel"})
           .field("axes_per_controller", &DriveConfig::axes_per_controller,
-                 {.meaning = "Motors per controller. It only affects the names of axes in command lists.",
+                 {.meaning =
+                      "Motors per controller. This number only affects the names of axes in command lists.",
                   .range = between(1, 1000)})
           .field("pretension", &DriveConfig::pretension,
                  {.meaning = "Tension of each tendon of an elastic arm if all motors are at position 0 and "

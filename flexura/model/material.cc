@@ -78,8 +78,8 @@ Table<MaterialConfig>& add_moduli(Table<MaterialConfig>& table) {
               .range = between(0, 1e6),
               .default_text = "from the density and radii"})
       .field("damping_time", &MaterialConfig::damping_time,
-             {.meaning = "Ratio of damping to stiffness of a dynamic arm (Kelvin-Voigt): the time constant "
-                         "with which a free strain decays.",
+             {.meaning = "Kelvin-Voigt damping of a dynamic arm, as ratio of damping to stiffness. A free "
+                         "strain decays with this time constant.",
               .unit = Unit::second,
               .range = between(0, 1e3)});
 }
@@ -100,11 +100,12 @@ const Table<StiffnessConfig>& fields_of(const StiffnessConfig*) {
 
 const Table<ModesConfig>& fields_of(const ModesConfig*) {
   static const auto table =
-      Table<ModesConfig>("modes",
-                         "Number of polynomials in arc length for each strain of a section. 1: constant "
-                         "strain; 0: strain fixed at its rest value. If guide disks divide the section into "
-                         "up to 11 pieces and `bend` is at least 3, each piece has its own polynomials. "
-                         "Their number per piece decreases with the number of pieces.")
+      Table<ModesConfig>(
+          "modes",
+          "Number of polynomials in arc length that represent each strain of a section. 1: constant strain; "
+          "0: strain fixed at its rest value. If guide disks divide the section into up to 11 pieces and "
+          "`bend` is at least 3, each piece has its own polynomials. The number of polynomials per piece "
+          "decreases with the number of pieces.")
           .field("shear", &ModesConfig::shear, modes("each of the two shear strains"))
           .field("stretch", &ModesConfig::stretch, modes("the axial strain"))
           .field("bend", &ModesConfig::bend, modes("each of the two curvatures"))
@@ -146,8 +147,9 @@ const Table<MaterialConfig>& fields_of(const MaterialConfig*) {
                 .default_text = "none: a continuous channel"})
         .field("modes", &MaterialConfig::modes, {.meaning = "Resolution of the strains."})
         .field("nodes", &MaterialConfig::nodes,
-               {.meaning = "Number of quadrature nodes along the section, including both ends. It must "
-                           "exceed the number of modes of any strain. 0: chosen from the modes.",
+               {.meaning = "Number of quadrature nodes along the section, including both ends. The number of "
+                           "nodes must be larger than the number of modes of each strain. 0: the program "
+                           "chooses the number according to the modes.",
                 .range = between(0, 64)})
         .field("mass", &MaterialConfig::mass,
                {.meaning = "Bodies on the section, as tables [[arm.section.material.mass]].",

@@ -10,8 +10,8 @@
 
 namespace flexura {
 
-/// Poisson's ratio of a material if a file has neither Poisson's ratio nor a shear modulus. It is typical of
-/// metals.
+/// Poisson's ratio of a material if a file has neither Poisson's ratio nor a shear modulus. This value is
+/// typical of metals.
 inline constexpr double common_poisson = 0.3;
 
 /// Stiffness of a rod, given directly instead of computed from moduli and radii.

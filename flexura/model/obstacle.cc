@@ -20,18 +20,19 @@ Table<S> obstacle_table(const char* kind, const char* meaning) {
       .field("name", &S::name,
              {.meaning = "Name of the obstacle in messages.",
               .default_text = "its kind and position in the list"})
-      .field("ignore_base", &S::ignore_base,
-             {.meaning = "Length from the arm's base, along the unstretched arm, that may touch the "
-                         "obstacle. An example is an arm on a support.",
-              .unit = Unit::metre,
-              .range = between(0, 1e6)})
+      .field(
+          "ignore_base", &S::ignore_base,
+          {.meaning = "Length of the part of the arm next to its base that may touch the obstacle, measured "
+                      "along the unstretched arm. An example is an obstacle that is the arm's support.",
+           .unit = Unit::metre,
+           .range = between(0, 1e6)})
       .field("may_touch", &S::may_touch,
              {.meaning =
                   "Whether the whole arm may touch the obstacle, for example to grasp it or to lean on it."})
       .field("color", &S::color,
-             {.meaning = "Fractions of red, green and blue light that the obstacle reflects. If cameras "
-                         "detect a dark arm, dark obstacles in front of the screens disturb the detection. "
-                         "Obstacles with the default colour do not.",
+             {.meaning = "Fractions of red, green and blue light that the obstacle reflects. Dark obstacles "
+                         "in front of the screens disturb the detection of a dark arm in pictures. Obstacles "
+                         "with the default colour do not disturb it.",
               .range = share_range});
   return table;
 }
@@ -105,7 +106,8 @@ const Table<PlaneConfig>& fields_of(const PlaneConfig*) {
       obstacle_table<PlaneConfig>("plane", "A plane that the arm must not pass, such as the ground.")
           .field("point", &PlaneConfig::point, place("A point of the plane.", false))
           .field("normal", &PlaneConfig::normal,
-                 {.meaning = "Normal of the plane, towards the side of the arm; its length must be above 0.",
+                 {.meaning = "Normal of the plane, towards the side where the arm is. The length of the "
+                             "normal must be above 0.",
                   .range = coordinate_range})
           .check([](const PlaneConfig& plane, Reader& reader) {
             if (!(vector(plane.normal).norm() > 0))
@@ -134,7 +136,7 @@ const Table<BoxConfig>& fields_of(const BoxConfig*) {
       obstacle_table<BoxConfig>("box", "A box.")
           .field("center", &BoxConfig::center, place("Centre."))
           .field("half_sizes", &BoxConfig::half_sizes,
-                 size("Half the lengths of the edges, along the box's x, y and z."))
+                 size("Half of the edge lengths along the box's x, y and z."))
           .field("rotation", &BoxConfig::rotation,
                  {.meaning = "Unit quaternion (w, x, y, z) from the box's axes to the world.",
                   .range = between(-2, 2)})

@@ -20,7 +20,7 @@ struct Obstacle {
   /// Signed distance of a point in W from the obstacle's surface, m: a convex function that is negative
   /// inside.
   std::function<double(const Eigen::Vector3d& p_W)> distance;
-  /// Unit normal of a plane in W. In its direction `distance` increases.
+  /// Unit normal of a plane in W. `distance` increases in the direction of the normal.
   std::optional<Eigen::Vector3d> normal{};
   /// The plane of a side of a box: all points p_W with normal . p_W = offset (m). The normal is a unit vector
   /// in W that points outwards. The height of a point above this plane never exceeds `distance`.
@@ -41,7 +41,7 @@ struct PlaneConfig {
   double ignore_base = 0;
   bool may_touch = false;  ///< Whether the arm may touch the obstacle, for example to grasp it.
   std::array<double, 3> point = {0, 0, 0};  ///< A point of the plane, in W, m.
-  /// Normal in W, which points out of the half space. Its length must be above 0.
+  /// Normal in W, which points out of the half space. The length of the normal must be above 0.
   std::array<double, 3> normal = {0, 1, 0};
   std::array<double, 3> color = obstacle_color;  ///< Reflected fractions of red, green and blue light.
 };

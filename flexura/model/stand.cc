@@ -32,13 +32,14 @@ const Table<ScreenConfig>& fields_of(const ScreenConfig*) {
                   .range = coordinate_range,
                   .required = true})
           .field("normal", &ScreenConfig::normal,
-                 {.meaning =
-                      "Normal of the screen. The direction of its height points upwards as far as possible.",
+                 {.meaning = "Normal of the screen. The screen is turned about its normal so that its height "
+                             "is as upright as possible.",
                   .range = coordinate_range})
           .field("width", &ScreenConfig::width, length_of("Width."))
           .field("height", &ScreenConfig::height, length_of("Height."))
-          .field("brightness", &ScreenConfig::brightness,
-                 {.meaning = "Emitted light; 1 is a camera's full scale.", .range = brightness_range})
+          .field(
+              "brightness", &ScreenConfig::brightness,
+              {.meaning = "Emitted light, in units of the cameras' full scale.", .range = brightness_range})
           .field(
               "gradient", &ScreenConfig::gradient,
               {.meaning =
@@ -93,8 +94,8 @@ const Table<LightConfig>& fields_of(const LightConfig*) {
           .field("towards", &LightConfig::towards,
                  {.meaning = "Direction towards the light source.", .range = coordinate_range})
           .field("shadow", &LightConfig::shadow,
-                 {.meaning =
-                      "Fraction of the directional light, and of a screen's light, that a shadow removes.",
+                 {.meaning = "Fraction of the directional light, and of the screens' light, that is missing "
+                             "in a shadow.",
                   .range = share_range})
           .field(
               "angular_radius", &LightConfig::angular_radius,
@@ -123,7 +124,8 @@ const Table<StandConfig>& fields_of(const StandConfig*) {
                   .range = above_up_to(0, 1e6),
                   .default_text = "large enough to show the arm's whole reach"})
           .field("background", &StandConfig::background,
-                 {.meaning = "Light of the empty background.", .range = brightness_range})
+                 {.meaning = "Light of the background, in units of the cameras' full scale.",
+                  .range = brightness_range})
           .field("arm", &StandConfig::arm, {.meaning = "Whether the arm is in the scene."});
   return table;
 }

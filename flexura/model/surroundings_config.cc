@@ -8,7 +8,7 @@ namespace flexura {
 
 const Table<ContactConfig>& fields_of(const ContactConfig*) {
   static const auto table =
-      Table<ContactConfig>("contact", "Contact of a dynamic arm with obstacles and with itself.")
+      Table<ContactConfig>("contact", "Contacts of a dynamic arm with obstacles and with itself.")
           .field("stiffness", &ContactConfig::stiffness,
                  {.meaning = "Contact stiffness: force per metre of penetration and per metre of arm, N/m^2.",
                   .range = between(1e-3, 1e12)})
@@ -20,7 +20,8 @@ const Table<ContactConfig>& fields_of(const ContactConfig*) {
           .field("friction", &ContactConfig::friction,
                  {.meaning = "Coulomb friction coefficient.", .range = between(0, 100)})
           .field("slip_speed", &ContactConfig::slip_speed,
-                 {.meaning = "Slip speed below which a contact sticks, m/s.", .range = between(1e-9, 1e3)})
+                 {.meaning = "Slip speed below which a contact counts as sticking, m/s.",
+                  .range = between(1e-9, 1e3)})
           .field("spacing", &ContactConfig::spacing,
                  {.meaning = "Distance between the contact points of the arm.",
                   .unit = Unit::metre,
@@ -70,8 +71,7 @@ const Table<PayloadConfig>& fields_of(const PayloadConfig*) {
                   .unit = Unit::metre,
                   .range = between(-1e3, 1e3)})
           .field("from", &PayloadConfig::from,
-                 {.meaning =
-                      "Time at which the arm picks up the payload. Before this time, the payload is at rest.",
+                 {.meaning = "Time at which the arm picks up the payload, which is at rest before.",
                   .unit = Unit::second,
                   .range = between(0, 1e9)})
           .field("until", &PayloadConfig::until,

@@ -41,8 +41,8 @@ class MappedTime {
 template <class Port, class State, class Reading, class... Way>
 class ClockedDevice : public Port {
  public:
-  /// `age`: largest age of a reading at the time of the request, s. It is above 0 for a device that reports
-  /// its last cyclic measurement. The other arguments must outlive this object.
+  /// `age`: largest age of a reading at the time of the request, s. This age is above 0 for a device that
+  /// reports its last cyclic measurement. The other arguments must outlive this object.
   ClockedDevice(Port& port, const ClockPort& rig, DeviceClock& clock, double age = 0)
       : port_(port), rig_(rig), time_(clock), age_(age) {}
 

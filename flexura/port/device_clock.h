@@ -46,8 +46,8 @@ class DeviceClock {
   /// is_known().
   [[nodiscard]] double rig_time(double device) const;
   /// Returns the largest possible error of rig_time(device) in either direction, s. If the ages of answers
-  /// are known, the result is a strict bound. Otherwise it is only the spread of the quickest answers. Throws
-  /// std::logic_error unless is_known().
+  /// are known, the result is a strict bound. Otherwise the result is only the spread of the quickest
+  /// answers. Throws std::logic_error unless is_known().
   [[nodiscard]] double uncertainty(double device) const;
   /// Returns the estimated relative rate difference by which the rig's clock is faster than the device's
   /// clock. Throws std::logic_error unless is_known().

@@ -42,13 +42,14 @@ struct RigModel {
   return rig_model(ArmModel(driven), cameras);
 }
 
-/// Axis positions that the head and the stage of one camera report.
+/// Stance of a camera: the axis positions that its head and its stage report at one time.
 struct RigStance {
   std::size_t camera = 0;  ///< Index in RigModel::cameras.
   HeadState head = {};
   StageState stage = {};
   /// Index of an earlier RigStance of the observations, if the camera has neither panned nor tilted since
-  /// then. Both stances then have equal errors of the head's angles. Zoom and stage may have moved.
+  /// then. Then this stance and the earlier one have equal errors of the head's angles. Zoom and stage may
+  /// have moved.
   std::optional<std::size_t> turned_as = {};
 
   /// Returns the axis positions without the camera's index.

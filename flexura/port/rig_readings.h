@@ -24,8 +24,8 @@ struct StanceReading {
 
 /// Returns the reading of head and stage of the rig's camera with index `camera`, or an error message. Errors
 /// are a fault, a number that is not finite, and a zoom outside the lens's table. A zoom that is outside the
-/// table by up to one resolution step is clamped to the table. `optics`: model of this camera. Its initial
-/// positions replace readings of a missing head or stage.
+/// table by up to one resolution step is clamped to the table. `optics`: model of this camera. The initial
+/// positions of the model replace readings of a missing head or stage.
 [[nodiscard]] std::variant<StanceReading, std::string> read_camera(const RigPorts& rig, std::size_t camera,
                                                                    const Camera& optics);
 

@@ -11,8 +11,8 @@ namespace flexura {
 /// Borders are reported up to this distance from a ray, px.
 inline constexpr double border_reach = 3;
 
-/// A border near a point of the image: a curve across which the visible surface or its colour changes. It is
-/// approximated by a straight line.
+/// A border near a point of the image: a curve across which the visible surface or its colour changes. The
+/// curve is approximated by a straight line.
 struct Border {
   double distance = std::numeric_limits<double>::infinity();  ///< Distance from the point, px; >= 0.
   Eigen::Vector2d towards = {1, 0};                           ///< Unit vector from the point to the line.

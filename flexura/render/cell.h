@@ -20,8 +20,8 @@ namespace flexura {
   return result;
 }
 
-/// The part of a square beyond a straight line. The square has sides of length 2 half and its centre at the
-/// origin.
+/// The part of a square beyond a straight line. The square has sides of the length 2 * `half`, and its centre
+/// at the origin.
 struct SquarePart {
   std::array<Eigen::Vector2d, 6> corners;
   std::size_t count = 0;
@@ -87,9 +87,9 @@ enum class Verdict { uniform, divided, unclear };
 /// Maximum number of times that a square's side is halved.
 inline constexpr int most_halvings = 4;
 
-/// Integrates over a square with sides of length 2 half around `center`: calls sink(hit, ray, area) for each
-/// uniform part. The area is in px^2. The ray is within the part or next to it. The sum of the areas is the
-/// square's area.
+/// Integrates over a square around `center` with sides of the length 2 * `half`: calls sink(hit, ray, area)
+/// for each uniform part. The area is in px^2. The ray is within the part or next to it. The sum of the areas
+/// is the square's area.
 template <typename Sink>
 void cover(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center, double half, int halvings,
            const Trace& seen, Sink&& sink) {

@@ -45,8 +45,8 @@ struct CircleView {
 struct Face {
   std::array<Eigen::Vector3d, 4> corners;
   Eigen::Vector3d normal;  ///< Unit normal.
-  /// Normals of the planes through the camera and each edge. They point inwards if the camera sees the face's
-  /// front.
+  /// Normals of the planes through the camera and each edge. The normals point inwards if the camera sees the
+  /// face's front.
   std::array<Eigen::Vector3d, 4> edges;
   bool is_front = true;  ///< Whether the camera is on the side to which the normal points.
 };

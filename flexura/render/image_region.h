@@ -24,11 +24,13 @@ struct PixelRange {
 };
 
 /// A region of the image that contains the images of all balls with a given radius around the points of a
-/// line segment, with a margin of some pixels. It assumes a lens without distortion. It is never too small.
+/// line segment, with a margin of some pixels. The computation assumes a lens without distortion. The region
+/// is never too small.
 class ImageRegion {
  public:
   /// Returns the region for the segment from p to q, in C, m; std::nullopt if the camera is too near. Omits
-  /// parts of the balls that are more than `beyond`, m, past the segment's ends, measured along the segment.
+  /// parts of the tube (the union of the balls) that are more than `beyond`, m, past the segment's ends,
+  /// measured along the segment.
   static std::optional<ImageRegion> of(const Intrinsics& lens, const Eigen::Vector3d& p,
                                        const Eigen::Vector3d& q, double radius,
                                        double beyond = std::numeric_limits<double>::infinity()) {

@@ -10,7 +10,7 @@
 namespace flexura {
 
 /// Maps each pixel to the undistorted position of its ray: the pixel at which a lens without distortion would
-/// show the ray. For a lens without distortion, it stores nothing. For other lenses, it recomputes the map
+/// show the ray. For a lens without distortion, nothing is stored. For other lenses, the map is recomputed
 /// only after a change of the lens or the image size.
 class LensMap {
  public:

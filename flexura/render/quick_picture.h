@@ -20,12 +20,12 @@ namespace flexura {
 /// Converts a number to single precision, which the fast path uses.
 [[nodiscard]] inline float number(double x) { return static_cast<float>(x); }
 
-/// The fast path of the renderer. It draws simple content in single precision, many pixels at a time, and
-/// lists all other pixels for the reference path. Simple content is screens with edges, the arm's surface,
-/// contours in front of a single surface, rims of the arm's ends, marker edges, and a calibration cylinder
-/// that nothing covers. The light agrees with the reference path within 1/500 of full scale, except at edges
-/// of markers or lines. At such edges, the other colour may cover up to 0.05 of a pixel. Depths agree within
-/// 1e-5 relative, nearly all within 1e-6.
+/// The fast path of the renderer. The fast path draws simple content in single precision, many pixels at a
+/// time, and lists all other pixels for the reference path. Simple content is screens with edges, the arm's
+/// surface, contours in front of a single surface, rims of the arm's ends, marker edges, and a calibration
+/// cylinder that nothing covers. The light agrees with the reference path within 1/500 of full scale, except
+/// at edges of markers or lines. At such edges, the other colour may cover up to 0.05 of a pixel. Depths
+/// agree within 1e-5 relative, nearly all within 1e-6.
 class QuickPicture {
  public:
   struct Pixel {

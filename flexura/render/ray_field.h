@@ -16,8 +16,9 @@ namespace flexura {
 /// Returns the ray of an image point; std::nullopt if the lens's distortion maps no ray to this point.
 [[nodiscard]] std::optional<Ray> ray_at(const Lens& lens, const Eigen::Vector2d& pixel);
 
-/// The rays of all pixels of an image. For a lens without distortion, it stores nothing. For other lenses, it
-/// stores all rays, and recomputes them only after a change of the lens or the image size.
+/// The rays of all pixels of an image. For a lens without distortion, a RayField stores nothing. For other
+/// lenses, a RayField stores all rays, and recomputes the rays only after a change of the lens or the image
+/// size.
 class RayField {
  public:
   /// Sets lens and image size. Throws std::invalid_argument for a size that is not positive or above 65536

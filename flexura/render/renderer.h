@@ -12,9 +12,9 @@ namespace flexura {
 
 struct PreparedScene;
 
-/// Draws scenes from their exact geometric description (docs/renderer.md). It reuses memory, so that a second
-/// picture of equal size allocates nothing. Only one thread at a time may use a renderer. The result depends
-/// only on scene and view, not on earlier pictures.
+/// Draws scenes from their exact geometric description (docs/renderer.md). A Renderer reuses memory, so that
+/// a second picture of equal size allocates nothing. Only one thread at a time may use a renderer. The result
+/// depends only on scene and view, not on earlier pictures.
 class Renderer {
  public:
   /// `path`: the instruction set of the fast path. Pictures are equal for all instruction sets.
@@ -33,7 +33,7 @@ class Renderer {
   /// Prepares for queries of true values, without drawing. The queries read `scene`, which must remain
   /// unchanged until the next call. Throws the exceptions of render().
   void prepare(const Scene& scene, const View& view);
-  /// Returns the last prepared scene, for the functions in truth.h. It is valid until the next call.
+  /// Returns the last prepared scene, for the functions in truth.h. The scene is valid until the next call.
   [[nodiscard]] const PreparedScene& prepared() const;
 
  private:

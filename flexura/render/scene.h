@@ -79,7 +79,7 @@ struct VisibleObstacle {
 /// Light on surfaces. A surface has the brightness albedo * (ambient + directional * max(0, cosine of the
 /// angle between its normal and the light)).
 struct Light {
-  /// Direction towards the light source, in W. Its length must be above 0.
+  /// Direction towards the light source, in W. The length of this vector must be above 0.
   Eigen::Vector3d direction = {0.4, 0.8, 0.45};
   /// Ambient and directional light; 1 is full scale on a white surface.
   double ambient = 0.45, directional = 0.55;

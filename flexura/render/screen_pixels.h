@@ -9,8 +9,8 @@
 
 namespace flexura {
 
-/// Stores pixels of the reference path that show only screens. They can be reused in later pictures as long
-/// as camera and screens do not change. It stores the pixels of the last few cameras.
+/// Stores pixels of the reference path that show only screens. Stored pixels can be reused in later pictures
+/// as long as camera and screens do not change. This object stores the pixels of the last few cameras.
 class ScreenPixels {
  public:
   /// A pixel: column, row, depth, m, and light of each channel.

@@ -16,8 +16,8 @@ struct SensorLevels {
   bool is_noisy = false;
 };
 
-/// Key of the noise of one row. The noise of a value depends only on this key and on the value's position in
-/// the row.
+/// Key of the random generator for the noise of one row. The noise of a value depends only on this key and on
+/// the value's position in the row.
 struct NoiseRow {
   std::uint32_t start = 0, mix = 0;
 };

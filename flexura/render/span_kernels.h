@@ -64,17 +64,17 @@ struct SpanPiece {
   /// Curvature, 1/m; radius at the piece's start, m; change of the radius per arc length.
   float curvature, radius, widening;
   float widest;  ///< Largest radius, m.
-  /// Distances from start and end along the axis, m, within which the reference path draws contours. They are
-  /// above 0 where curvature or taper changes.
+  /// Distances from start and end along the axis, m, within which the reference path draws contours. These
+  /// distances are above 0 where curvature or taper changes.
   float kink_before, kink_after;
   float end_sine, end_cosine, end_offset;
   float reach;  ///< Distance from the surface within which contours may divide the pixel, m.
   /// Distance inside a contour within which the images of edges of rings and lines are curved, m; >= reach.
   float bent_reach;
   int centering;       ///< Number of Newton steps to the point at which the ray is deepest in the tube.
-  float largest_move;  ///< Largest allowed length of the last of these steps, m.
+  float largest_move;  ///< Largest allowed length of the last of the `centering` steps, m.
   int refining;        ///< Number of Newton steps to the ray's entry into the tube.
-  float settled;       ///< Largest allowed length of the last of these steps, m.
+  float settled;       ///< Largest allowed length of the last of the `refining` steps, m.
   float light[3];  ///< Directional light divided by the radius, times the unit direction towards the light.
   float ambient;
   float albedo[3];  ///< Albedo at the piece's start.
@@ -108,9 +108,9 @@ struct RimPixels {
   std::uint8_t is_plain[span_step];
 };
 
-/// A screen. Its plane is in front of the camera where the inverse depth `nearness` is positive. The light at
-/// the screen's point (x, y) = depth place - middle is brightness max(0, 1 + gradient . (x, y)) (1 - falloff
-/// (x^2 + y^2) / 2).
+/// A screen. The plane of the screen is in front of the camera where the inverse depth `nearness` is
+/// positive. The light at the screen's point (x, y) = depth place - middle is brightness max(0, 1 + gradient
+/// . (x, y)) (1 - falloff (x^2 + y^2) / 2).
 struct SpanScreen {
   float u0, v0;
   Linear nearness, place[2];
@@ -144,8 +144,8 @@ struct SpanKernels {
   /// Draws the piece's surface in the columns [begin, end) where the piece is nearest and no contour is near.
   void (*draw)(const SpanPiece& piece, int begin, int end, SpanRow& row);
   /// Draws the screen in the columns [begin, end) where the screen is nearest and none of its edges is near.
-  /// `is_first` means that the row is empty. Without distortion, its content is then ignored, except for the
-  /// light of a screen with uniform light.
+  /// `is_first` means that the row is empty. Without distortion, the content of an empty row is ignored,
+  /// except for the light of a screen with uniform light.
   void (*screen)(const SpanScreen& screen, int begin, int end, bool is_first, SpanRow& row);
   /// Appends the columns that may contain the rim to row.borders.
   void (*find_rim)(const SpanRim& rim, int begin, int end, SpanRow& row);

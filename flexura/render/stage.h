@@ -72,8 +72,8 @@ struct LineEdge {
   double angle = 0;          ///< Angle around the calibration cylinder's +Y from its +Z, rad in (-pi, pi].
 };
 
-/// A scene in one camera's frame C, as primitives for intersection with rays. It reuses memory from frame to
-/// frame.
+/// A scene in one camera's frame C, as primitives for intersection with rays. A Stage reuses memory from
+/// frame to frame.
 struct Stage {
   std::vector<Body> bodies;
   std::vector<TubePiece> pieces;

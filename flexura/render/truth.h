@@ -71,12 +71,13 @@ struct MarkerView {
 [[nodiscard]] std::vector<MarkerView> marker_views(const Renderer& renderer);
 
 /// Returns the optical flow in two channels (u, v), px: the image motion of the surface point in the middle
-/// of each pixel. The motion is from the prepared scene and view to the given scene and view. It is NaN for
-/// the background, and for points that leave the lens's field of view. Points of the arm keep their section,
-/// their fraction of the section's length, and their position in the cross-section. Points of screens and of
-/// the calibration cylinder move with these bodies. Obstacles are fixed. Points need not be visible in the
-/// second view. Throws std::invalid_argument for a scene that check() rejects. Also throws it if the numbers
-/// of tube arcs, disks or screens of the two scenes differ, and if only one of the scenes has the cylinder.
+/// of each pixel. The motion is from the prepared scene and view to the given scene and view. The motion is
+/// NaN for the background, and for points that leave the lens's field of view. Points of the arm keep their
+/// section, their fraction of the section's length, and their position in the cross-section. Points of
+/// screens and of the calibration cylinder move with these bodies. Obstacles are fixed. Points need not be
+/// visible in the second view. Throws std::invalid_argument for a scene that check() rejects. Also throws it
+/// if the numbers of tube arcs, disks or screens of the two scenes differ, and if only one of the scenes has
+/// the cylinder.
 [[nodiscard]] Image<float> optical_flow(const Renderer& renderer, const Scene& scene, const View& view);
 
 }  // namespace flexura

@@ -22,7 +22,7 @@ enum class PlotView : std::uint8_t { xoy, zoy };
 [[nodiscard]] bool lies_in_xoy(const Arm& arm);
 
 /// Returns the page points of an arc in a view. The points are displaced to the left of the arc's direction
-/// by an offset that changes from aside[0] to aside[1] (page units). For arcs that fit a page, they are
+/// by an offset that changes from aside[0] to aside[1] (page units). For arcs that fit a page, the points are
 /// accurate to 0.1 page units.
 [[nodiscard]] std::vector<Eigen::Vector2d> arc_points(const Arc& arc, PlotView view, const PlotFrame& frame,
                                                       std::array<double, 2> aside = {});

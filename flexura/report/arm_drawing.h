@@ -32,8 +32,8 @@ namespace flexura {
 [[nodiscard]] Drawing tip_path_picture(const ReportMotion& motion);
 
 /// Returns the drawing for the page's player: axes, the first and last shape as lines, the tip's path, and an
-/// empty group for each view. Each group has the class "view". Its attributes convert metres to page units: x
-/// = data-x + data-scale X, y = data-y - data-scale Y.
+/// empty group for each view. Each group has the class "view". The attributes of this group convert metres to
+/// page units: x = data-x + data-scale X, y = data-y - data-scale Y.
 [[nodiscard]] Drawing player_picture(const ReportMotion& motion, const PlotScene& scene);
 
 }  // namespace flexura

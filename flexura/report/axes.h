@@ -83,8 +83,8 @@ struct LegendEntry {
   std::string css_class;
 };
 
-/// Draws a legend in rows from the page point `corner` (top left), and not beyond `right`. It consists of a
-/// title, which may be empty, and the entries. Returns the legend's height, page units.
+/// Draws a legend in rows from the page point `corner` (top left), and not beyond `right`. The legend
+/// consists of a title, which may be empty, and the entries. Returns the legend's height, page units.
 double draw_legend(XmlWriter& svg, const std::string& title, const std::vector<LegendEntry>& entries,
                    const Eigen::Vector2d& corner, double right);
 

@@ -19,13 +19,14 @@ struct ChartSeries {
       {};  ///< Style class for colour and dash; empty: chosen by the position in the chart.
 };
 
-/// A chart of values over time or another variable. In the page, it is an interactive plot. As a file, it is
-/// a picture.
+/// A chart of values over time or another variable. In the page, the chart is an interactive plot. As a file,
+/// it is a picture.
 struct LineChart {
   std::string heading;      ///< Heading, such as "bend of each section".
   std::string x_label;      ///< Name of the x axis, such as "t (s)".
   std::string value_label;  ///< Name of the value axis, such as "bend_x (deg)".
-  double least = 1.0;  ///< Smallest extent of the value axis. It prevents small noise from filling the chart.
+  double least =
+      1.0;  ///< Smallest extent of the value axis. This extent prevents small noise from filling the chart.
   std::vector<double> x = {};  ///< Values of x, increasing; at least one.
   std::vector<ChartSeries> series = {};
   std::string legend =

@@ -27,8 +27,8 @@ struct ImagePlot {
   std::string legend;  ///< Title of the legend; may be empty.
   int width = 0, height = 0;
   std::vector<ImageOutline> outlines;
-  /// The image as a data URL, "data:image/jpeg;base64,...". If it is given, the whole image is shown behind
-  /// the outlines.
+  /// The image as a data URL, "data:image/jpeg;base64,...". If the data URL is given, the whole image is
+  /// shown behind the outlines.
   std::string background = {};
 };
 

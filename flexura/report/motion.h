@@ -16,9 +16,9 @@ namespace flexura {
 inline constexpr std::size_t max_shown_states = 2000;
 inline constexpr std::size_t max_shown_numbers = 200'000;
 
-/// Returns increasing indices of at most `most` (>= 2) of the increasing `times`. They include the first and
-/// the last time, and the times nearest to those in `desired`. If `desired` has more than most / 2 times,
-/// only an even selection of these is included. The other indices are evenly spaced.
+/// Returns increasing indices of at most `most` (>= 2) of the increasing `times`. The indices include the
+/// first and the last time, and the times nearest to those in `desired`. If `desired` has more than most / 2
+/// times, only an even selection of these is included. The other indices are evenly spaced.
 [[nodiscard]] std::vector<std::size_t> kept_indices(const std::vector<double>& times,
                                                     const std::vector<double>& desired, std::size_t most);
 

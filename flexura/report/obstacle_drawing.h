@@ -14,8 +14,8 @@ namespace flexura {
                                                  const std::vector<ObstacleConfig>& obstacles);
 
 /// Draws the outlines of the run's obstacles in view `v` of the scene, clipped at the plot's border. A plane
-/// obstacle is drawn if it is perpendicular to the view. For an arm in a plane, its intersection with the
-/// arm's plane is drawn.
+/// obstacle is drawn if it is perpendicular to the view. For an arm in a plane, the intersection of the
+/// obstacle with the arm's plane is drawn.
 void draw_obstacles(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion);
 
 }  // namespace flexura

@@ -24,8 +24,8 @@ namespace flexura {
 /// Returns the HTML element of a table, in a frame that scrolls if the page is narrower than the table.
 [[nodiscard]] std::string table_html(const ChapterTable& table);
 
-/// Returns the motion as JSON for the page's script. It contains only numbers, so that it is valid inside a
-/// script element.
+/// Returns the motion as JSON for the page's script. The JSON contains only numbers, so that it is valid
+/// inside a script element.
 [[nodiscard]] std::string motion_json(const ReportMotion& motion);
 
 }  // namespace flexura

@@ -29,7 +29,7 @@ struct Chapter {
   std::vector<std::string> points = {};    ///< List below the paragraph; any texts.
   bool is_first_tall = true;               ///< Whether the first figure is as high as two figures.
   std::optional<ChapterTable> table = {};  ///< Table between the paragraph and the list.
-  /// A collapsed list below the list `points`. It is shown if it has items.
+  /// A collapsed list below the list `points`. The list is shown if it has items.
   struct Details {
     std::string heading;
     std::vector<std::string> points;
@@ -52,9 +52,9 @@ struct ReportData {
       double start = 0.0;  ///< In s.
       double end = 0.0;    ///< In s.
       std::vector<std::size_t>
-          sections;      ///< Indices of sections that are marked with a warning during that time.
+          sections;  ///< Indices of the sections that are marked with a warning while the violation lasts.
       std::string text;  ///< Text beside the drawing of the violation.
-      /// If the violation has a separate drawing: the time of the drawing, s. It should be one of the
+      /// If the violation has a separate drawing: the time of the drawing, s. This time should be one of the
       /// report's times.
       std::optional<double> pictured_at = {};
       std::optional<Eigen::Vector3d> target = {};  ///< Target of the tip in W, m. It is drawn too.
@@ -106,9 +106,9 @@ struct FigureFile {
   std::string svg;        ///< Text of the file.
 };
 
-/// Returns the whole report as one HTML page. It loads no other files; its content security policy enforces
-/// this. For a long run, the page has only about 2000 states and mentions this. Throws std::invalid_argument
-/// if times and states do not match or do not fit the arm.
+/// Returns the whole report as one HTML page. The page loads no other files; its content security policy
+/// enforces this. For a long run, the page has only about 2000 states and mentions this. Throws
+/// std::invalid_argument if times and states do not match or do not fit the arm.
 [[nodiscard]] std::string report_html(const ReportData& data);
 
 /// Returns the report's pictures and charts, for papers. All runs have arm-start, arm-middle, arm-end,

@@ -26,8 +26,8 @@ struct PlotScene {
   [[nodiscard]] double scale() const { return frames.front().scale().x(); }
 };
 
-/// Returns a scene that shows `box` (m, axes of W) with a margin. It has only the view XOY if `one_view`,
-/// otherwise both views. The shown range is at least `least` m wide.
+/// Returns a scene that shows `box` (m, axes of W) with a margin. The scene has only the view XOY if
+/// `one_view`, otherwise both views. The shown range is at least `least` m wide.
 [[nodiscard]] PlotScene scene_of(const Eigen::AlignedBox3d& box, bool one_view, double least);
 
 /// Extends a box (m, axes of W) by an arm's tube.

@@ -48,7 +48,7 @@ struct ReportSpace {
 [[nodiscard]] std::vector<Eigen::Vector3d> points_along(const Backbone& backbone, std::size_t count);
 
 struct ReportMotion;
-/// Returns the 3D view's data as JSON for the page's script. It is valid inside a script element.
+/// Returns the 3D view's data as JSON for the page's script. The JSON is valid inside a script element.
 [[nodiscard]] std::string space_json(const ReportSpace& space, const ReportMotion& motion);
 
 }  // namespace flexura

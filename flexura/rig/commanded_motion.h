@@ -10,14 +10,13 @@
 
 namespace flexura {
 
-/// Motion of the arm as a task commands it, from a start time on. It is linear from one commanded shape to
-/// the next.
+/// Commanded motion of the arm from a start time on. The motion is linear between the commanded shapes.
 class CommandedMotion {
  public:
   CommandedMotion(double start, ArmState state);
 
-  /// Adds a command sent at `time` (s) to reach `state` in `duration` s. The motion begins at the commanded
-  /// shape of that time.
+  /// Adds a command that is sent at `time`, s, to reach `state` in `duration` s. The motion starts at the
+  /// shape that is commanded at `time`.
   void send(double time, const ArmState& state, double duration);
   [[nodiscard]] ArmState at(double time) const;
   /// Returns the motion up to `time`.
@@ -29,7 +28,8 @@ class CommandedMotion {
   std::vector<ArmState> states_;
 };
 
-/// Ports of a rig for a task that commands the arm. Records the run's steps as the clock advances.
+/// Ports of a rig for a task that commands the arm. When the clock advances, this object records the steps of
+/// the run.
 class RecordedPorts : private ClockPort {
  public:
   /// `from`: last commanded state of the arm. The devices and `record` must outlive this object.

@@ -111,7 +111,8 @@ void ask_camera(DeviceReport& report, const CameraEquipment& equipment, const Ca
     if (fault) clock.wait_until(clock.now() + 0.1 * slice);
   }
   if (!first) {
-    report.problem = fault ? one_line(text(*fault)) : fmt::format("no picture came within {:g} s", patience);
+    report.problem =
+        fault ? one_line(text(*fault)) : fmt::format("no picture arrived within {:g} s", patience);
     return;
   }
   const CameraCounts before = source->counts();

@@ -9,14 +9,14 @@
 
 namespace flexura {
 
-/// Returns a rig that does what equipment_rig() does, without equipment. The drivers of the experiment's
-/// table [rig] talk to simulated devices (DryDevices), and `take` receives every message that they send.
-/// Pictures and the readings of arm and heads are those of the simulated rig. Time is simulated: 0 is the
-/// start of the run, and the messages before it, of connecting and homing, have times below 0. The Setup must
-/// outlive the rig. Throws std::runtime_error with one clear line if a driver refuses the file or a command.
+/// Returns a rig for a dry run. A dry run uses the same drivers as equipment_rig(), but the drivers
+/// communicate with simulated devices (DryDevices). `take` receives every message that the drivers send.
+/// Pictures and readings are those of the simulated rig. Time is simulated, and time 0 is the start of the
+/// run. Messages before the start, such as those of homing, have times below 0. The Setup must outlive the
+/// rig. Throws std::runtime_error with one clear line if a driver refuses the file or a command.
 [[nodiscard]] std::unique_ptr<Rig> dry_rig(const Setup& setup, const TakeDryMessage& take);
 
-/// Returns what a dry run of this setup assumes about the devices, one sentence each.
+/// Returns the assumptions about the devices in a dry run of this setup, one sentence each.
 [[nodiscard]] std::vector<std::string> dry_assumptions(const Setup& setup);
 
 }  // namespace flexura

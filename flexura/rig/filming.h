@@ -23,23 +23,23 @@ class Filming : public Rig, private RigTruth {
   explicit Filming(const Setup& setup);
   Filming(const Setup& setup, std::size_t threads);
 
-  /// Returns the ports. Their clock shows the time of the last call of a function that advances the rig.
+  /// Returns the ports. The clock of the ports shows the time up to which the rig has been advanced.
   [[nodiscard]] RigPorts ports() override { return rig_->ports(); }
   [[nodiscard]] RigTruth* truth() override { return this; }
   [[nodiscard]] bool is_simulated() const override { return true; }
-  /// Plays the rig as in Rig. The frames of one call are rendered in parallel.
+  /// Advances the rig as described in Rig. The frames of one call are rendered in parallel.
   void play_to(double time, const ArmState& state, const TakeFrame& take) override;
   void pass_to(double time, const ArmState& state) override;
   void skip_to_now() override;
 
-  /// Returns the exposure of a camera that begins at `start` (s). The motion must have been played up to this
-  /// time. If a frame begins at `start`, the exposure is that of the frame.
+  /// Returns the exposure of a camera that begins at `start`, s. The rig must have been advanced to this
+  /// time. If a frame begins at `start`, the result is the exposure of this frame.
   [[nodiscard]] Shot shot(std::size_t camera, double start);
   [[nodiscard]] Picture take(const Shot& shot) { return photographers_[shot.camera]->take(shot); }
   /// Returns the simulated rig.
   [[nodiscard]] SimulatedRig& simulation() { return *rig_; }
-  /// Returns the simulated rig in its present state. The rig remains usable without this object, but must not
-  /// be asked for frames. This object can then only be destroyed.
+  /// Returns the simulated rig in its present state, and gives up its ownership. The rig remains usable
+  /// without this object, except for frames. Afterwards this object can only be destroyed.
   [[nodiscard]] std::unique_ptr<SimulatedRig> give_away() { return std::move(rig_); }
   /// Returns the scene and the view of the camera of `shot`. `time`: s since the start of the exposure.
   [[nodiscard]] ShownScene shown(const Shot& shot, double time) const {

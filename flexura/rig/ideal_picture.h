@@ -10,8 +10,8 @@
 
 namespace flexura {
 
-/// Returns the simulator's pictures of the file's arm model, gray and without noise: the paper's ideal images
-/// (section 2).
+/// Returns a function that renders the file's arm model in gray and without noise. These pictures are the
+/// paper's ideal images (section 2).
 [[nodiscard]] std::function<Image<std::uint8_t>(const View&, const ArmState&)> ideal_pictures(
     const Setup& setup);
 

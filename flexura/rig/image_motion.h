@@ -5,9 +5,10 @@
 
 namespace flexura {
 
-/// Returns the highest image speed in a shot, px/s, from the start of the exposure to its end in the last
-/// row. It is the largest speed of the arm's joints and of points of `stand`, a scene without an arm. Enough
-/// times are sampled to detect a motion that returns to its start.
+/// Returns the highest speed in the image during a shot, px/s. The shot lasts from the start of the exposure
+/// to the end of the exposure of the last row. The result is the largest speed of the images of the arm's
+/// joints and of points of `stand`. `stand`: the scene without the arm. Enough times are sampled to detect
+/// motions that return to their start.
 [[nodiscard]] double fastest_image_motion(const Shot& shot, const Scene& stand);
 
 }  // namespace flexura

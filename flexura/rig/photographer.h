@@ -14,8 +14,8 @@
 
 namespace flexura {
 
-/// Makes the pictures of an experiment's cameras from the true scene, its light and the sensor. A picture
-/// depends only on its shot.
+/// Renders the pictures of an experiment's cameras from the true scene, the light and the sensor model. A
+/// picture depends only on its shot.
 class Photographer {
  public:
   explicit Photographer(const Setup& setup);

@@ -13,33 +13,34 @@
 
 namespace flexura {
 
-/// Pictures of a rehearsed camera.
+/// Numbers of pictures of a rehearsed camera.
 struct RehearsedPictures {
-  std::int64_t sent = 0;     ///< Pictures sent to a program.
-  std::int64_t skipped = 0;  ///< Pictures that were not rendered, because the machine is too slow.
+  std::int64_t sent = 0;     ///< Number of pictures sent to a program.
+  std::int64_t skipped = 0;  ///< Number of pictures that were not rendered because the computer is too slow.
 };
 
-/// The simulated rig of an experiment behind simulated devices, in real time. The devices are stepper
-/// controllers that speak Grbl on pseudoterminals, heads that speak VISCA over UDP, and cameras that serve
-/// video over RTSP. A program that runs the experiment on this equipment needs no hardware.
+/// The simulated rig of an experiment, in real time, with simulated devices. The devices are stepper
+/// controllers with Grbl on pseudoterminals, VISCA heads at UDP ports, and cameras that send video over RTSP.
+/// So a program can run the experiment with its real drivers but without hardware.
 class Rehearsal {
  public:
-  /// Starts the devices. The world is that of `setup`, including [truth]; a table [rig] is ignored. Throws
+  /// Starts the devices. Simulates the rig of `setup`, including [truth]; a table [rig] is ignored. Throws
   /// std::invalid_argument with one clear line if the setup has no drive or its pictures have other than 8
-  /// bits, and std::runtime_error as open_video_server().
+  /// bits, and std::runtime_error in the same cases as open_video_server().
   explicit Rehearsal(const Setup& setup, const VideoServerConfig& video = {});
-  /// Ends the devices.
+  /// Stops the devices.
   ~Rehearsal();
   Rehearsal(const Rehearsal&) = delete;
   Rehearsal& operator=(const Rehearsal&) = delete;
 
   /// Returns the table [rig] that connects a program to the devices.
   [[nodiscard]] RigEquipment equipment() const;
-  /// Returns why the simulation has ended, for example an elastic arm that collapsed; "" while it goes on.
+  /// Returns the reason why the simulation has ended, for example the collapse of an elastic arm; "" while it
+  /// runs.
   [[nodiscard]] std::string failure() const;
-  /// Returns how often arm and heads went back to their initial positions.
+  /// Returns how often arm and heads were moved back to their initial positions.
   [[nodiscard]] int runs() const;
-  /// Returns the number of pictures of a camera up to now.
+  /// Returns the numbers of pictures of a camera so far.
   [[nodiscard]] RehearsedPictures pictures(std::size_t camera) const;
   /// Returns the arm's true backbone now.
   [[nodiscard]] Backbone backbone();

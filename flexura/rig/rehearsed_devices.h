@@ -20,8 +20,8 @@ namespace flexura {
 /// A simulated stepper controller on a pseudoterminal: Grbl for three axes, otherwise grblHAL.
 class RehearsedController {
  public:
-  /// The controller has the limits of the motors of `axes`, at most 8; where these have none, those of fast
-  /// motors.
+  /// The controller has the speed and acceleration limits of the motors of `axes`, which are at most 8.
+  /// Motors without limits get the limits of fast motors.
   explicit RehearsedController(const std::vector<Axis>& axes)
       : RehearsedController(axes, open_serial_pair()) {}
 
@@ -30,7 +30,8 @@ class RehearsedController {
   [[nodiscard]] std::size_t axes() const { return axes_; }
   /// Returns the motors' positions since the start, microsteps.
   [[nodiscard]] std::vector<double> positions();
-  /// Turns all motors by hand by a share of their way back to the start.
+  /// Turns all motors back by a fraction of the distance to their initial positions, without the controller's
+  /// knowledge.
   void turn_back(double share);
 
  private:
@@ -43,15 +44,17 @@ class RehearsedController {
   DeviceServer server_;
 };
 
-/// A simulated VISCA head at a UDP port, whose motors are those of a camera of a world. It moves at the rates
-/// of the world's head, whatever the speed in a command, and its axes stop together.
+/// A simulated VISCA head at a UDP port, which moves the head of a camera in a RehearsedWorld. The rates are
+/// those of the head in the RehearsedWorld, not the speed in the command. All axes of the head stop at the
+/// same time.
 class RehearsedHead {
  public:
-  /// `camera`: index in the world, and `model` its model. The world must outlive this object.
+  /// `camera`: index of the camera in the world. `model`: model of the camera. The world must outlive this
+  /// object.
   RehearsedHead(RehearsedWorld& world, std::size_t camera, const Camera& model)
       : RehearsedHead(world, camera, model, open_udp_place()) {}
 
-  /// Returns how a program connects to the head. The head has one count for each step of its axes.
+  /// Returns the configuration by which a program connects to the head. A count is one step of an axis.
   [[nodiscard]] const ViscaConfig& config() const { return config_; }
 
  private:

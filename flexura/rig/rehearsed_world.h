@@ -16,34 +16,35 @@
 
 namespace flexura {
 
-/// The simulated rig of an experiment in real time. Controllers outside turn its motors: their limits are
-/// those of the controllers, not of the drive. Several threads may use it.
+/// The simulated rig of an experiment in real time. Simulated controllers outside this object turn its
+/// motors, with the limits of the controllers, not of the drive. Several threads may use it.
 class RehearsedWorld {
  public:
-  /// Returns the present position of each motor, microsteps, in the motor's own sense.
+  /// Function that returns the present position of each motor, microsteps, as the motor's controller counts.
   using Positions = std::function<std::vector<double>()>;
 
-  /// Time 0 is now. `positions` is called in any thread that advances the world. Requires a drive.
+  /// Time 0 is the time of construction. `positions` is called in any thread that advances the world.
+  /// Requires a drive.
   RehearsedWorld(const Setup& setup, Positions positions);
 
   /// Returns the time, s.
   [[nodiscard]] double now() const;
-  /// Returns the steady_seconds() of a time of this world, s.
+  /// Converts a time of this world to the clock steady_seconds(), s.
   [[nodiscard]] double steady(double time) const { return start_ + time; }
-  /// Brings the simulation to the present: since the last call the motors turned steadily from their
-  /// positions then to those now.
+  /// Advances the simulation to the present. Since the last call, each motor is assumed to have turned at
+  /// constant speed.
   void advance();
 
   /// Commands a camera's head.
   void turn(std::size_t camera, const HeadState& to);
   /// Stops all axes of a camera's head.
   void halt(std::size_t camera);
-  /// Returns what a camera's head reads now.
+  /// Returns the present reading of a camera's head.
   [[nodiscard]] HeadReading head(std::size_t camera);
 
   /// Returns whether the camera loses a frame (SensorConfig::drop, SensorConfig::silent).
   [[nodiscard]] bool is_lost(std::size_t camera, std::int64_t frame);
-  /// Renders a frame whose exposure is over. Not twice at once for a camera.
+  /// Renders a frame whose exposure is over. Only one thread at a time may render a frame of the same camera.
   [[nodiscard]] Picture picture(std::size_t camera, std::int64_t frame);
   [[nodiscard]] const SensorConfig& sensor(std::size_t camera) const { return sensors_.at(camera); }
 

@@ -23,10 +23,10 @@ namespace flexura {
 struct FilmedFrame {
   std::string camera;
   Frame frame;
-  std::string message = {};  ///< logged_image() of the frame; "" if it is not made yet.
+  std::string message = {};  ///< Result of logged_image() for the frame; "" if not yet computed.
 };
 
-/// True state of a rig, which its ports do not provide. Algorithms must not use it.
+/// True state of a rig. The rig's ports do not provide it, and algorithms must not use it.
 class RigTruth {
  public:
   virtual ~RigTruth() = default;
@@ -47,10 +47,10 @@ class RigTruth {
   [[nodiscard]] virtual std::optional<RodEnergy> energy(double /*time*/) { return std::nullopt; }
   /// Returns the arm's contacts at a recent time.
   [[nodiscard]] virtual std::vector<PlantContact> contacts(double /*time*/) { return {}; }
-  /// Returns a one-line warning about the arm's state at a recent time, or "".
+  /// Returns a warning of one line about the arm's state at a recent time, or "".
   [[nodiscard]] virtual std::string warning(double /*time*/) { return {}; }
-  /// Returns the number of microsteps that each motor had lost by a recent time, unknown to its controller.
-  /// Empty if motors cannot lose any.
+  /// Returns the number of microsteps that each motor had lost by a recent time. Controllers do not notice
+  /// lost microsteps. Empty if motors cannot lose microsteps.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) { return {}; }
 };
 
@@ -66,29 +66,28 @@ class Rig {
   [[nodiscard]] virtual RigPorts ports() = 0;
   /// Returns the true state; null for real equipment.
   [[nodiscard]] virtual RigTruth* truth() { return nullptr; }
-  /// Returns true if nothing can be damaged, so that unsafe motions may be played.
+  /// Returns true for a simulated rig: nothing can be damaged, so that unsafe motions are allowed.
   [[nodiscard]] virtual bool is_simulated() const { return false; }
 
   using TakeFrame = std::function<void(const FilmedFrame&)>;
-  /// Commands the arm to be in `state` at `time` (s) and waits until then. `time` must not be before that of
-  /// the previous call. Passes every frame received meanwhile to `take`, in the order of time, then of the
-  /// cameras.
+  /// Commands the arm to be in `state` at `time` (s) and waits until then. `time` must not be before the time
+  /// of the previous call. Passes every frame received in between to `take`, ordered by time, then by camera.
   virtual void play_to(double time, const ArmState& state, const TakeFrame& take) = 0;
-  /// Plays to `time` like play_to(), but without frames.
+  /// Advances to `time` like play_to(), but without frames.
   virtual void pass_to(double time, const ArmState& state) = 0;
-  /// Discards frames received up to now.
+  /// Discards all frames that were received before now.
   virtual void skip_to_now() = 0;
 };
 
-/// Makes the rig of an experiment. The Setup must outlive the rig.
+/// Function that makes the rig of an experiment. The Setup must outlive the rig.
 using RigFactory = std::function<std::unique_ptr<Rig>(const Setup&)>;
 
 /// Returns a simulated rig (rig/filming.h).
 [[nodiscard]] std::unique_ptr<Rig> simulated_rig(const Setup& setup);
 
-/// Returns the rig of the equipment in the experiment's table [rig]. It connects to all devices, finds out
-/// where the motors are (RigEquipment::start) and starts the process that stops devices when this program
-/// dies or hangs. In the end it stops all devices. Its clock shows real time.
+/// Returns the rig of the equipment in the experiment's table [rig]. The function connects to all devices,
+/// determines the motor positions (RigEquipment::start), and starts the process that stops the devices if
+/// this program crashes or hangs (Guard). The destructor stops all devices. The rig's clock shows real time.
 ///
 /// Throws std::runtime_error with one clear line if a device cannot be used, or, later, if a device fails.
 [[nodiscard]] std::unique_ptr<Rig> equipment_rig(const Setup& setup);

@@ -22,16 +22,16 @@ namespace flexura {
 /// The controllers of an arm, connected and with known motor positions.
 class ArmEquipment {
  public:
-  /// Connects to all controllers and finds out where the motors are (RigEquipment::start). Homing and
-  /// pretensioning move them, and are waited for. `access` must outlive this object. Throws
-  /// std::runtime_error with one clear line if a device cannot be used.
+  /// Connects to all controllers and determines the motor positions (RigEquipment::start). For this, homing
+  /// and pretensioning move the motors. Returns when these motions are complete. `access` must outlive this
+  /// object. Throws std::runtime_error with one clear line if a device cannot be used.
   ArmEquipment(const RigEquipment& equipment, const ArmSetup& setup, DeviceAccess& access);
-  /// Lets a motion in progress arrive, unless an exception is on its way, and stops the motors.
+  /// Waits for the end of a motion in progress, unless an exception is being handled. Then stops the motors.
   ~ArmEquipment();
   ArmEquipment(const ArmEquipment&) = delete;
   ArmEquipment& operator=(const ArmEquipment&) = delete;
 
-  /// Makes the ports. From now on the drives may move. `time_shift`, s, is added to the times of readings.
+  /// Makes the ports. Afterwards the drives may move. `time_shift`, s, is added to the times of readings.
   void start(double time_shift = 0);
 
   /// Returns the arm, after start().
@@ -44,7 +44,7 @@ class ArmEquipment {
   [[nodiscard]] const Cia402Drive* bus() const { return can_ ? &*can_ : nullptr; }
   /// Returns the motor positions at which the arm has its initial shape, microsteps.
   [[nodiscard]] const std::vector<double>& rest() const { return rest_; }
-  /// Reports to the guard that this program works.
+  /// Sends the guard a sign of life.
   void beat();
 
  private:
@@ -65,12 +65,12 @@ class ArmEquipment {
   std::optional<DrivenArm> arm_;
 };
 
-/// The buses of heads by their addresses. Heads of a chain share one.
+/// The VISCA buses by their addresses. All heads of a chain share one bus.
 using ViscaBuses = std::map<std::string, std::shared_ptr<ViscaBus>>;
 
-/// Connects to the head of a camera, without moving it. Returns null if the camera has none. `about`, if not
-/// null, receives what the head says about itself, or "". `access` must outlive the head. Throws
-/// std::runtime_error with one clear line if it cannot be used.
+/// Connects to the head of a camera, without moving it. Returns null if the camera has no head. `about`, if
+/// not null, receives a description of the head, or "". `access` must outlive the head. Throws
+/// std::runtime_error with one clear line if the head cannot be used.
 [[nodiscard]] std::unique_ptr<HeadPort> open_head(const CameraEquipment& equipment, DeviceAccess& access,
                                                   ViscaBuses& buses, std::string* about = nullptr);
 

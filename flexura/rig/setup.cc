@@ -102,9 +102,10 @@ const Table<RecordConfig>& fields_of(const RecordConfig*) {
 
 const Table<TruthConfig>& fields_of(const TruthConfig*) {
   static const auto table =
-      Table<TruthConfig>("truth",
-                         "Simulated truth: parts of the same tables that override the models which tasks "
-                         "use. Cameras are matched by name, sections and tendons by position in the list.")
+      Table<TruthConfig>(
+          "truth",
+          "True values of the simulated world: parts of the same tables, which override the models that "
+          "tasks use. Cameras are matched by name, sections and tendons by position in the list.")
           .field("arm", &TruthConfig::arm,
                  {.meaning = "True arm.", .partial = true, .default_text = "as modelled"})
           .field("drive", &TruthConfig::drive,

@@ -34,8 +34,8 @@ struct RecordConfig {
   double tension = 0.5;               ///< Tension of the Catmull-Rom curve.
 };
 
-/// The table [truth]: differences of the simulated world from the model in the rest of the file. A file may
-/// contain only parts of these tables; the reader takes omitted values from the model.
+/// The table [truth]: true values of the simulated world that differ from the models in the rest of the file.
+/// A file may contain only parts of these tables. The reader copies omitted values from the models.
 struct TruthConfig {
   std::optional<ArmConfig> arm;
   std::optional<DriveConfig> drive;
@@ -59,8 +59,9 @@ struct Setup {
   StandConfig stand;
   std::vector<CameraConfig> camera;  ///< Cameras; empty: the paper's two cameras (see cameras()).
   std::optional<TruthConfig> truth;  ///< Differences of the simulated world from the model; missing: none.
-  std::optional<RigEquipment> equipment;  ///< Equipment that runs the experiment; missing: it is simulated.
-  std::filesystem::path folder;           ///< Folder of the experiment file; not a field of the file.
+  std::optional<RigEquipment>
+      equipment;  ///< Real equipment that executes the experiment; missing: the experiment is simulated.
+  std::filesystem::path folder;  ///< Folder of the experiment file; not a field of the file.
 
   /// Returns the arm model. Throws InputError for an elastic arm without an equilibrium.
   [[nodiscard]] ArmModel arm_model() const;
@@ -68,13 +69,13 @@ struct Setup {
   [[nodiscard]] RigConfig model_rig() const;
   /// Returns the true rig.
   [[nodiscard]] RigConfig true_rig() const;
-  /// Returns the true surroundings. Their default screens are at the positions that follow from the arm
-  /// model.
+  /// Returns the true surroundings. The positions of default screens follow from the arm model, not from the
+  /// true arm.
   [[nodiscard]] StandConfig true_stand() const;
 
-  /// Returns the cameras of the file, or the paper's two cameras if the file has none. These are at the
-  /// stand's distances, or at distances that show the arm's whole reach. A VISCA head of the equipment cannot
-  /// be commanded between its counts, so its model's resolution is not finer.
+  /// Returns the cameras of the file, or the paper's two cameras if the file has none. The paper's cameras
+  /// are at the distances in [stand], or at distances from which they see the arm's whole reach. The
+  /// resolution of a VISCA head is at least one count of the equipment's head.
   [[nodiscard]] std::vector<CameraConfig> cameras() const;
 
  private:

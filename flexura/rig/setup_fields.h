@@ -22,9 +22,10 @@ template <std::derived_from<Setup> S>
           .field("title", &Setup::title,
                  {.meaning = "Title of the report.", .default_text = "the file's name"})
           .field("seed", &Setup::seed,
-                 {.meaning = "Seed of all random numbers of the run.", .range = between(0, 1e15)})
+                 {.meaning = "Seed of all random numbers in the run.", .range = between(0, 1e15)})
           .field("include", &Setup::include,
-                 {.meaning = "Files in this file's folder or below whose values this file overrides.",
+                 {.meaning = "Files with default values, in this file's folder or below. Values in this file "
+                             "override those of included files.",
                   .count = {0, 100},
                   .default_text = "none"})
           .field("clock", &Setup::clock, {.meaning = "Time of the experiment."})
@@ -37,17 +38,17 @@ template <std::derived_from<Setup> S>
                  {.meaning = "Obstacles that the arm must not touch.",
                   .count = {0, max_obstacles},
                   .default_text = "none"})
-          .field("stand", &Setup::stand, {.meaning = "Surroundings of the arm that cameras see."})
+          .field("stand", &Setup::stand, {.meaning = "Surroundings of the arm in the cameras' pictures."})
           .field("camera", &Setup::camera,
                  {.meaning = "Cameras.",
                   .count = {0, max_cameras},
-                  .default_text =
-                      "two, \"front\" on +Z and \"side\" on -X, with all of the arm's reach in view"})
-          .field("truth", &Setup::truth,
-                 {.meaning = "Simulated truth, where it differs from the models that tasks use.",
-                  .default_text = "as modelled"})
+                  .default_text = "two: \"front\" on +Z and \"side\" on -X; both show the arm's whole reach"})
+          .field(
+              "truth", &Setup::truth,
+              {.meaning = "True values of the simulated world that differ from the models which tasks use.",
+               .default_text = "as modelled"})
           .field("rig", &Setup::equipment,
-                 {.meaning = "Equipment that runs the experiment.", .default_text = "simulated"}));
+                 {.meaning = "Real equipment that executes the experiment.", .default_text = "simulated"}));
 }
 
 }  // namespace flexura

@@ -21,10 +21,11 @@ struct CheckedMotion {
   const TimedMotion& timed;
   double step = 0;  ///< Step of the clock, s.
   SafetyReport& report;
-  /// Function that is called with the completed fraction of this motion's check. It returns false to stop the
-  /// check.
+  /// Function that is called with the completed fraction of this motion's check. The function returns false
+  /// to stop the check.
   std::function<bool(double done)> go_on;
-  /// Whether the motion is an elastic arm's shape. Jumps are then those of its command, checked separately.
+  /// Whether the motion is an elastic arm's shape. Then jumps are those of the command, which are checked
+  /// separately.
   bool is_shape = false;
 
   [[nodiscard]] const Motion& motion() const { return *timed.motion; }
@@ -70,7 +71,7 @@ struct CheckedMotion {
 /// Returns the rate above which a rate limit counts as violated.
 [[nodiscard]] inline double threshold_of_rate(double limit) { return limit * (1 + limit_tolerance); }
 
-/// Returns the violation for a contact. Its times and depth are not set.
+/// Returns the violation for a contact. The times and the depth of the violation are not set.
 [[nodiscard]] inline Violation contact_violation(const ContactWatch& watch, const Contact& place) {
   return {.hazard = watch.hazard(),
           .section = place.section,

@@ -15,7 +15,8 @@
 
 namespace flexura {
 
-/// Penetrations up to this depth do not count as contacts. The error of distances is at most half of it.
+/// Penetrations up to this depth do not count as contacts. Computed distances have an error of at most half
+/// this depth.
 inline constexpr double contact_tolerance = 1e-6;  // m.
 
 /// Contacts may remain undecided between two samples if the arm moves by less than this between the samples.
@@ -52,7 +53,7 @@ class ContactWatch {
   /// touch each other. The arguments are the ends of a chain of sections: the base and the section, or the
   /// two sections of the pair.
   void for_each_chain(const std::function<void(std::size_t first, std::size_t last)>& visit) const;
-  /// Returns the contact for a chain from section `first` to `last`. Its clearance is not set.
+  /// Returns the contact for a chain from section `first` to `last`. The clearance of the result is not set.
   [[nodiscard]] Contact place_of(std::size_t first, std::size_t last) const;
   /// Returns the smallest possible clearance of the chain's last section during the chain's Swing, m, as
   /// precisely as `query` requires. For an arm at rest, this is the clearance.

@@ -10,8 +10,8 @@
 
 namespace flexura {
 
-/// Rate of a bend (rad/s) or a stretch (1/s) above which a change counts as a jump. For a bend, it is more
-/// than a full turn in 1 ms.
+/// Rate of a bend (rad/s) or a stretch (1/s) above which a change counts as a jump. For a bend, this rate is
+/// more than a full turn in 1 ms.
 inline constexpr double jump_rate = 1e4;
 
 /// Smallest jump that is reported: rad for a bend, a factor for a stretch.
@@ -38,8 +38,8 @@ struct Jump {
 /// Returns the jumps of any motion up to the time `until`, s. Repeatedly halves every interval of `step` s
 /// and continues in the half with the larger change. During this process, the change of a jump keeps its
 /// size, but the change of a fast motion does not. A jump is found if it is at least 1/32 of the motion's
-/// change within the step. Changes that are not finite are ignored. `go_on` may be empty. It receives the
-/// completed share of the search, and returns false to end the search.
+/// change within the step. Changes that are not finite are ignored. `go_on` may be empty. `go_on` receives
+/// the completed share of the search, and returns false to end the search.
 [[nodiscard]] std::vector<Jump> find_jumps(const Motion& motion, double step,
                                            double until = std::numeric_limits<double>::infinity(),
                                            const std::function<bool(double done)>& go_on = {});

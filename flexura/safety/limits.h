@@ -10,16 +10,16 @@
 
 namespace flexura {
 
-/// Fraction of a limit by which a value may exceed the limit. It allows for rounding errors, because limits
-/// are given in degrees and values are computed in radians.
+/// Fraction of a limit by which a value may exceed the limit. This fraction allows for rounding errors,
+/// because limits are given in degrees and values are computed in radians.
 inline constexpr double limit_tolerance = 1e-9;
 
 /// A limited quantity of one section.
 struct LimitWatch {
   Hazard hazard = Hazard::bend;
-  std::size_t section = 0;                             ///< Index of the section; 0 at the base.
-  double limit = 0;                                    ///< Limit for messages, in the hazard's unit.
-  double sign = 1;                                     ///< 1 for an upper limit, -1 for a lower limit.
+  std::size_t section = 0;  ///< Index of the section; 0 at the base.
+  double limit = 0;         ///< Limit for messages, in the hazard's unit.
+  double sign = 1;          ///< Sign of the limit: 1 for an upper limit, -1 for a lower limit.
   std::function<double(const ArmState& state)> value;  ///< Returns the limited value in the hazard's unit.
   /// Returns a bound on |d value/dt| during [start, end], s, of a motion with known bounds on its rates.
   std::function<double(const Motion& motion, double start, double end)> rate;

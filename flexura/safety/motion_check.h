@@ -24,7 +24,7 @@ struct TimedMotion {
 /// Checks motions that are executed one after another from the state `initial` (docs/safety.md). Hazards are
 /// bends, bend rates, stretches, stretch rates, folding, self-contact, contact with obstacles, and jumps. For
 /// a motion with known bounds on its rates, the check misses nothing between samples (spans.h). Other motions
-/// are sampled every `step` s, and the report states this. `progress` may be null. If it cancels the check,
+/// are sampled every `step` s, and the report states this. `progress` may be null. If the check is cancelled,
 /// the report is incomplete.
 [[nodiscard]] SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacles,
                                          const ArmState& initial, const std::vector<TimedMotion>& motions,

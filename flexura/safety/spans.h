@@ -65,8 +65,8 @@ struct SpanSearch {
   std::size_t most_intervals = 200'000;
   /// Largest total number of intervals of all quantities, distributed evenly among them.
   std::size_t most_together = std::numeric_limits<std::size_t>::max();
-  /// Function that is called repeatedly with the decided fraction of the time. If it returns false, the
-  /// search ends with the results so far.
+  /// Function that is called repeatedly with the decided fraction of the time. If the function returns false,
+  /// the search ends with the results so far.
   std::function<bool(double decided)> go_on = {};
 };
 
@@ -84,9 +84,9 @@ struct FoundSpans {
 ///
 /// The bounds of an interval may prove that the quantity is below the limit or above it; otherwise the
 /// interval is halved. An undecided interval no longer than search.time is above the limit if its ends or
-/// middle are. Otherwise it is below the limit if its upper bound exceeds the limit by at most search.value.
-/// Hence a missed violation is shorter than half of search.time and exceeds the limit by at most
-/// search.value. The ends of spans are accurate to search.time. An interval that is too short to halve
+/// middle are. Otherwise the interval is below the limit if its upper bound exceeds the limit by at most
+/// search.value. Hence a missed violation is shorter than half of search.time and exceeds the limit by at
+/// most search.value. The ends of spans are accurate to search.time. An interval that is too short to halve
 /// (`shortest_interval`) counts as above the limit, unless it is proved to be below.
 ///
 /// Intervals are processed by decreasing length, and either all or none of the intervals of one length are

@@ -54,8 +54,8 @@ class Chain {
   /// times the section's possible motion.
   [[nodiscard]] SectionTube grown(double sign, double share = 1) const;
   /// Returns the rule for pairs of points that takes the possible motion into account. With sign -1, the rule
-  /// selects all pairs that may have to be considered. With sign 1, it selects only the pairs that certainly
-  /// must be considered.
+  /// selects all pairs that may have to be considered. With sign 1, the rule selects only the pairs that
+  /// certainly must be considered.
   [[nodiscard]] PairRule rule(double sign) const;
   /// Returns whether the rule includes any pair of points.
   [[nodiscard]] bool has_pairs(const PairRule& rule) const;

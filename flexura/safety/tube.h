@@ -27,7 +27,7 @@ struct SectionTube {
   double turn = 0;
   double start = 0;  ///< Length of the backbone from the arm's base to the section's start, m.
   /// A quarter of the circumference (pi/2 times the radius) at the section's start and end, m, for PairRule.
-  /// It remains unchanged in thicker or thinner copies of a tube.
+  /// This length remains unchanged in thicker or thinner copies of a tube.
   std::array<double, 2> girth = {};
 
   /// Returns the backbone point at the fraction `u` of the section, in [0, 1].
@@ -78,7 +78,7 @@ struct DistanceQuery {
                                double distance);
 
 /// Returns the smallest distance, m, between the obstacle and the tube's surface beyond the fraction `from`
-/// of the section. It is negative if tube and obstacle overlap. It is exact for a plane.
+/// of the section. The distance is negative if tube and obstacle overlap. The distance is exact for a plane.
 [[nodiscard]] double obstacle_distance(const SectionTube& tube, double from, const Obstacle& obstacle,
                                        const DistanceQuery& query);
 

@@ -23,8 +23,8 @@ struct WorstSearch {
 };
 
 /// Returns the largest value of a quantity in a span, and a time at which the quantity has this value. The
-/// method is branch and bound: it repeatedly halves the interval with the largest upper bound. It ends when
-/// no upper bound exceeds the largest value found so far by more than the tolerance.
+/// method is branch and bound: it repeatedly halves the interval with the largest upper bound. The method
+/// ends when no upper bound exceeds the largest value found so far by more than the tolerance.
 [[nodiscard]] WorstValue worst_in(const WatchedQuantity& quantity, const Span& span,
                                   const WorstSearch& search);
 

@@ -27,8 +27,8 @@ struct AnswerHead {
   bool last = false;
 };
 
-/// Returns the text of a head. Its security headers forbid everything that the server's pages do not need
-/// (docs/viewer-protocol.md).
+/// Returns the text of a head. The security headers in the head forbid everything that the server's pages do
+/// not need (docs/viewer-protocol.md).
 std::string format_head(const AnswerHead& head);
 
 /// Returns an answer that refuses a request, with the reason phrase of `status` as body. `more` and `last`

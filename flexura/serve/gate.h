@@ -41,8 +41,8 @@ class Gate {
   std::string token_;
 };
 
-/// Returns true if a browser can use this name for a server. It is a name of letters, digits, - and _ between
-/// single dots, or an IP address (version 6 in brackets), with or without ":port". Returns false for
+/// Returns true if a browser can use this name for a server. Such a name consists of letters, digits, - and _
+/// between single dots, or an IP address (version 6 in brackets), with or without ":port". Returns false for
 /// everything else.
 [[nodiscard]] bool is_host(std::string_view text);
 

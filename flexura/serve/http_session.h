@@ -33,8 +33,8 @@ struct Upgrade {
 };
 using Step = std::variant<ReadMore, Answer, Question, Upgrade>;
 
-/// The protocol of one HTTP connection, without a socket. Its input is bytes, and its output is actions.
-/// Requests that arrive together are answered one after another.
+/// The protocol of one HTTP connection, without a socket. The input of an HttpSession is bytes, and its
+/// output is actions. Requests that arrive together are answered one after another.
 class HttpSession {
  public:
   /// `local`: the local address of the connection, without its port.
@@ -57,8 +57,8 @@ class HttpSession {
   [[nodiscard]] std::size_t held() const { return buffer_.size(); }
 
  private:
-  /// Reads the head of the next request. Returns 0, or the status with which to refuse the request. If it
-  /// returns 0 and `head` is empty, more bytes are needed.
+  /// Reads the head of the next request. Returns 0, or the status with which to refuse the request. If the
+  /// result is 0 and `head` is empty, more bytes are needed.
   int read_head(std::optional<RequestHead>* head);
   [[nodiscard]] Step decide(const RequestHead& head) const;
   [[nodiscard]] Step secret(const RequestHead& head, std::string_view path) const;

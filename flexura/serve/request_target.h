@@ -10,7 +10,8 @@ namespace flexura {
 
 /// Decoded target of a request.
 struct RequestTarget {
-  std::string path;  ///< Path that begins with "/". It has no parts "." or "..", and no control characters.
+  std::string
+      path;  ///< Path that begins with "/". The path has no parts "." or "..", and no control characters.
   std::vector<std::pair<std::string, std::string>>
       query;  ///< Keys and values in the order of the query; a key without "=" has an empty value.
 

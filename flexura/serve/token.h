@@ -10,8 +10,8 @@ namespace flexura {
 /// if that source fails.
 std::string new_token();
 
-/// Returns the bits that differ in any byte of two texts with equal lengths. It always reads all bytes of
-/// both texts, so that the time does not depend on their content. `at(text, i)` returns a byte.
+/// Returns the bits that differ in any byte of two texts with equal lengths. The function always reads all
+/// bytes of both texts, so that the time does not depend on their content. `at(text, i)` returns a byte.
 template <class At>
 unsigned char difference_of(std::string_view a, std::string_view b, At&& at) {
   // volatile prevents the compiler from leaving the loop early.

@@ -47,8 +47,8 @@ class DisturbanceWatch {
   /// tendon explains most of the deviation. Such a tendon is broken or slack, or its motor lost steps.
   [[nodiscard]] std::string what() const;
   /// Names the tendon whose release explains most of the deviation since the first observation, or returns ""
-  /// if there is no such tendon. It detects a tendon that breaks under a small tension, which causes no
-  /// sudden deviation.
+  /// if there is no such tendon. This function detects a tendon that breaks under a small tension, which
+  /// causes no sudden deviation.
   [[nodiscard]] std::string slow_cause() const;
 
  private:

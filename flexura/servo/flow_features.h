@@ -45,7 +45,8 @@ class FlowFeatures : public ServoFeatures {
 
   /// Angles of one camera's last observation, rad, from u towards v. `carried` and `measured` are the tracked
   /// and the measured angles of the chords' images. `turns` are the angles' changes since the previous
-  /// observation according to the flow. They are NaN where the flow is missing and at the first observation.
+  /// observation according to the flow. These changes are NaN where the flow is missing and at the first
+  /// observation.
   struct Angles {
     std::vector<double> carried, measured, turns;
   };

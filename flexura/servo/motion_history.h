@@ -16,7 +16,7 @@ class MotionHistory {
   /// Keeps the readings of the last `span` s before the newest one, and one older reading.
   MotionHistory(double span, Blend blend) : span_(span), blend_(std::move(blend)) {}
 
-  /// Adds a reading. Skips it if it is not newer than the last one.
+  /// Adds a reading. Skips a reading that is not newer than the last one.
   void add(double time, Value value) {
     if (!readings_.empty() && !(time > readings_.back().first)) return;
     readings_.emplace_back(time, std::move(value));

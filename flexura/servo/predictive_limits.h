@@ -13,8 +13,8 @@
 namespace flexura {
 
 /// Limits of a predictive servo in addition to those of bends and rates, linearised about the present
-/// command. They limit tensions to what the motors can hold, keep the arm clear of obstacles and of itself,
-/// and keep it within the pictures (docs/control.md, "Predictive law").
+/// command. These limits restrict tensions to what the motors can hold, keep the arm clear of obstacles and
+/// of itself, and keep it within the pictures (docs/control.md, "Predictive law").
 class PredictiveLimits {
  public:
   PredictiveLimits(ArmModel model, const ServoConfig& config);

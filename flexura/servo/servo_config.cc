@@ -19,9 +19,10 @@ const Table<ServoCameraPrior>& fields_of(const ServoCameraPrior*) {
       Table<ServoCameraPrior>(
           "camera_prior",
           "Prior standard deviations of the camera models. The servo estimates errors of the camera models "
-          "together with the arm's shape; with 0, the model counts as exact.")
+          "together with the arm's shape. With the value 0, the model counts as exact.")
           .field("rotation_std", static_cast<double ServoCameraPrior::*>(&ServoCameraPrior::rotation_std),
-                 {.meaning = "Standard deviation of a camera's orientation, about each axis of its view.",
+                 {.meaning =
+                      "Standard deviation of a camera's orientation, about each axis of the camera frame.",
                   .unit = Unit::radian,
                   .range = between(0, 1)})
           .field("focal_std", static_cast<double ServoCameraPrior::*>(&ServoCameraPrior::focal_std),

@@ -98,7 +98,7 @@ class ChordFeatures : public ServoFeatures {
 
 /// Returns the features of the law `silhouettes`: displacements of the edges in both images along their
 /// normals, px. The values are the pixels of the edges, and the normals of the shape's contours at these
-/// pixels. They are NaN where there is no contour. The error is contour_error().
+/// pixels. Pixels and normals are NaN where there is no contour. The error is contour_error().
 [[nodiscard]] std::unique_ptr<ServoFeatures> silhouette_features(const Arm& arm, int points);
 
 }  // namespace flexura

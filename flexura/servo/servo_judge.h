@@ -42,7 +42,8 @@ class ServoJudge {
   bool is_singular_ = false;
 };
 
-/// Statistics of a servo's steps, updated with each step. Its memory does not grow with the number of steps.
+/// Statistics of a servo's steps, updated with each step. The memory of a ServoJudge does not grow with the
+/// number of steps.
 class ServoTally {
  public:
   /// `begun`: start of the session, s. `last_goal`: time of the last target, s after `begun`. `arm` must

@@ -21,8 +21,8 @@ struct ServoObservation {
   std::array<Observation, 2>
       seen;                ///< Measured arm in each picture. The views include the estimated camera errors.
   ShapeEstimate estimate;  ///< Estimated shape of the arm at the time of the observation.
-  /// Equilibrium shape of the arm, without its oscillation. For an arm without dynamics, it equals the shape
-  /// of `estimate`.
+  /// Equilibrium shape of the arm, without its oscillation. For an arm without dynamics, the equilibrium
+  /// shape equals the shape of `estimate`.
   ArmState rest;
   std::array<std::string, 2> reasons;  ///< Reason why a picture shows no arm, or "".
 };

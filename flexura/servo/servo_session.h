@@ -32,8 +32,8 @@ struct ServoResult {
   double overshoot =
       0;  ///< Overshoot of the tip beyond its target, as a share of the tip's path to the target.
   std::optional<ServoError> remaining;  ///< Mean error over the last `settle` s.
-  /// Standard deviation of the last observed shape, root mean square along the arm, share of its length. It
-  /// is computed from the last pictures only; empty if no shape was observed.
+  /// Standard deviation of the last observed shape, root mean square along the arm, share of its length. The
+  /// value is computed from the last pictures only; empty if no shape was observed.
   std::optional<double> sigma;
   /// Last observation, command and request of the law before the servo ended early, whatever the reason.
   /// `time` counts from the servo's start.

@@ -37,8 +37,8 @@ struct ServoStep {
   std::optional<ServoError> error;  ///< Error of the observed shape relative to the target.
   /// True shape at the time of the observation. The simulator of the rig adds it; the servo does not know it.
   std::optional<TrueShape> truth;
-  /// Half the squared error of the law. It is a Lyapunov function if the arm follows its commands. Its unit
-  /// is rad^2 for the laws `shape` and `potential`, otherwise px^2 (docs/servo.md).
+  /// Half the squared error of the law. This value is a Lyapunov function if the arm follows its commands.
+  /// The unit of this value is rad^2 for the laws `shape` and `potential`, otherwise px^2 (docs/servo.md).
   double potential = 0;
   bool is_fresh = false;     ///< Whether the observation is new since the last step.
   bool is_singular = false;  ///< Whether the law is singular: some motion of the arm changes no feature.

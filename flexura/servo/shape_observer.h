@@ -16,8 +16,8 @@
 
 namespace flexura {
 
-/// State observer of the arm. It estimates the shape from measured pictures and the drives' motion after
-/// them. It also measures the time without observations.
+/// State observer of the arm. The observer estimates the shape from measured pictures and the drives' motion
+/// after them. The observer also measures the time without observations.
 class ShapeObserver {
  public:
   /// `rig` reports the drives' motion. `rig` and `nominal` must outlive this object.
@@ -25,8 +25,8 @@ class ShapeObserver {
 
   /// Starts to measure the time without observations at `time`, s of the rig's clock.
   void begin(double time) { seen_since_ = time; }
-  /// Estimates the arm's shape at the observation's time. `now`: current time, s of the rig's clock. If it
-  /// finds the shape, it returns true, corrects the observation's views by the estimated camera errors, and
+  /// Estimates the arm's shape at the observation's time. `now`: current time, s of the rig's clock. If the
+  /// shape is found, returns true, corrects the observation's views by the estimated camera errors, and
   /// last() becomes this observation. Returns false if it finds no shape, for example if a picture shows no
   /// arm.
   bool observe(const std::shared_ptr<ServoObservation>& observed, double now);
@@ -49,15 +49,15 @@ class ShapeObserver {
   /// Returns the expected equilibrium shape of the arm: the last estimate without oscillation, changed by the
   /// drives' motion since then. `driven`: the model's shape for the drives' position.
   [[nodiscard]] ArmState expected(ArmState driven) const;
-  /// Returns the oscillation of the arm at the last observation. It is not tracked for an arm without
-  /// dynamics.
+  /// Returns the oscillation of the arm at the last observation. Oscillation is not tracked for an arm
+  /// without dynamics.
   [[nodiscard]] const SwingFilter& swing() const { return tracker_.swing(); }
   /// Returns the motion of the drives from the last observation until `time`, s, according to their readings.
-  /// It includes the excitation of these modes by the motion.
+  /// The result includes the excitation of the oscillation modes by the motion.
   [[nodiscard]] SwingPath path_until(double time, const std::vector<SwingMode>& modes) const;
   /// Returns the standard deviation of the last shape due to the pictures' noise: root mean square along the
-  /// arm, share of its length. It does not include errors of cameras without a prior; these are equal in
-  /// every picture.
+  /// arm, share of its length. The value does not include errors of cameras without a prior; these are equal
+  /// in every picture.
   [[nodiscard]] double sigma() const;
   /// Returns the standard deviation of the last shape if only the last pictures are used. The filter behind
   /// sigma() assumes independent errors in successive pictures. For an arm at rest, the errors are equal in

@@ -25,8 +25,8 @@ class AxisMotion {
   AxisMotion(const AxisConfig& axis, const Backlash& backlash, double start, double delay, double horizon);
 
   /// Commands a motion that begins at `time` + delay and ends at the commandable position nearest to
-  /// `target`. It takes `duration` s, or longer if limits require it. Throws std::invalid_argument if `time`
-  /// is before the last command.
+  /// `target`. The motion takes `duration` s, or longer if limits require it. Throws std::invalid_argument if
+  /// `time` is before the last command.
   void command(double time, double target, double duration = 0);
   /// Commands a stop that begins at `time` + delay, as fast as the acceleration allows.
   void halt(double time);

@@ -17,8 +17,8 @@ class BendMotion {
   BendMotion(const Arm& arm, const ArmState& start, double horizon);
 
   /// Commands a motion that begins at `time` and ends at the shape nearest to `target` within the sections'
-  /// limits. It takes `duration` s, or longer if needed. Throws std::invalid_argument if `time` is before the
-  /// last command, or if `target` does not fit the arm.
+  /// limits. The motion takes `duration` s, or longer if needed. Throws std::invalid_argument if `time` is
+  /// before the last command, or if `target` does not fit the arm.
   void command(double time, const ArmState& target, double duration);
   void halt(double time);
 

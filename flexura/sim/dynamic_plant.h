@@ -20,7 +20,8 @@
 namespace flexura {
 
 /// A plant whose arm is an elastic rod with inertia (docs/mechanics.md, "In time"). Tendons, weight and loads
-/// act on the arm, which can oscillate. Its ArmRod defines contact with obstacles and the drag of a fluid.
+/// act on the arm, which can oscillate. The plant's ArmRod defines contact with obstacles and the drag of a
+/// fluid.
 ///
 /// The arm starts at rest, and its motion is computed in steps of ArmRod::time_step from time 0. Each step
 /// uses the commands that are valid during the step. The state at a time between two steps is computed by a

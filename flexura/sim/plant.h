@@ -39,7 +39,7 @@ struct PlantPushForce {
 /// The true arm of the simulated world: computes its response to commands over time.
 ///
 /// For an arm with a drive, a command u has the position of each motor, in microsteps in the motor's own
-/// direction. Without a drive, it has bend_x, bend_y and stretch of each section. A plant is not a port: it
+/// direction. Without a drive, u has bend_x, bend_y and stretch of each section. A plant is not a port: it
 /// returns true values, which algorithms must not use.
 class Plant {
  public:
@@ -54,11 +54,11 @@ class Plant {
   /// Commands a stop at `time`, s, as fast as possible. `time` must not be before the last command.
   virtual void halt(double time) = 0;
   /// Advances the computation to the rig's time `time`, s, for plants that are integrated step by step. By
-  /// default, it does nothing.
+  /// default, this function does nothing.
   virtual void advance(double /*time*/) {}
-  /// Returns the backbone at `time`, s. It must be at most the horizon (PlantSetup) before the rig's time,
-  /// and not after the rig's time. Queries change nothing. Several threads may query at once while no thread
-  /// commands or advances the plant.
+  /// Returns the backbone at `time`, s. `time` must be at most the horizon (PlantSetup) before the rig's
+  /// time, and not after the rig's time. Queries change nothing. Several threads may query at once while no
+  /// thread commands or advances the plant.
   [[nodiscard]] virtual Backbone backbone(double time) const = 0;
   /// Returns the bends and stretches that the drives impose on the sections. Returns std::nullopt if drives
   /// do not bend sections. Times are as for backbone(), but future times are allowed too.
@@ -80,9 +80,9 @@ class Plant {
   /// Returns false and does nothing if forces do not move the arm. Throws std::invalid_argument for a push
   /// with values that are not finite or out of bounds, or with a point off the arm.
   virtual bool push(double /*time*/, const std::optional<PlantPush>& /*push*/) { return false; }
-  /// Returns the push at a time, s. Times are as for backbone().
+  /// Returns the push at a time, s. Valid times are the same as for backbone().
   [[nodiscard]] virtual std::optional<PlantPush> pushed(double /*time*/) const { return std::nullopt; }
-  /// Returns the effect of the push at a time, s. Times are as for backbone().
+  /// Returns the effect of the push at a time, s. Valid times are the same as for backbone().
   [[nodiscard]] virtual std::optional<PlantPushForce> push_force(double /*time*/) const {
     return std::nullopt;
   }
@@ -93,21 +93,22 @@ class Plant {
   /// Returns a one-line warning about an unusual state of the arm; "" if there is none. Times are as for
   /// backbone().
   [[nodiscard]] virtual std::string warning(double /*time*/) const { return {}; }
-  /// Returns the tension of each tendon at the arm's base, N; empty if unknown. Times are as for backbone().
+  /// Returns the tension of each tendon at the arm's base, N; empty if unknown. Valid times are the same as
+  /// for backbone().
   [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) const { return {}; }
   /// Returns kinetic energy, strain energy and potential energy of weight and loads. Returns std::nullopt for
-  /// an arm without inertia. Times are as for backbone().
+  /// an arm without inertia. Valid times are the same as for backbone().
   [[nodiscard]] virtual std::optional<RodEnergy> energy(double /*time*/) const { return std::nullopt; }
-  /// Returns the contacts with obstacles and with the arm itself. Times are as for backbone().
+  /// Returns the contacts with obstacles and with the arm itself. Valid times are the same as for backbone().
   [[nodiscard]] virtual std::vector<PlantContact> contacts(double /*time*/) const { return {}; }
-  /// Returns the number of microsteps that each motor has lost up to a time, s. Its controller does not
-  /// notice them. Returns an empty vector if motors never lose steps.
+  /// Returns the number of microsteps that each motor has lost up to a time, s. Controllers do not notice
+  /// lost microsteps. Returns an empty vector if motors never lose steps.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) const { return {}; }
 };
 
 /// Initial conditions of a plant.
 struct PlantSetup {
-  const ArmSetup& truth;  ///< The true arm. It starts in the state `truth.initial`.
+  const ArmSetup& truth;  ///< The true arm. The plant starts in the state `truth.initial`.
   Eigen::VectorXd start;  ///< The initial command u.
   double horizon = 0;     ///< Queries are allowed for this time before the rig's time, s.
 };
@@ -147,7 +148,7 @@ class DrivenPlant : public ArcPlant {
   std::vector<double> zero_;  // Tendon displacements at motor position 0, m.
 };
 
-/// An arm that is a chain of arcs. Its sections bend as commanded, within their own rates.
+/// An arm that is a chain of arcs. The sections bend as commanded, within their own rates.
 class BendPlant : public ArcPlant {
  public:
   /// Uses the limits and rates of the true sections.

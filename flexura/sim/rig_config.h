@@ -12,7 +12,7 @@
 
 namespace flexura {
 
-/// A rig as described by the tables of a file. It is either the model that tasks use, or the truth.
+/// A rig as described by the tables of a file. Such a rig is either the model that tasks use, or the truth.
 struct RigConfig {
   ArmConfig arm;
   /// Drive of the arm; missing: the sections bend as commanded, within their own rates.
@@ -29,9 +29,9 @@ struct RigConfig {
 /// names a missing entry.
 [[nodiscard]] Node truth_of(Node document);
 
-/// Returns why `truth` and `model` do not match, or "" if they do. They must have equal kinds of arms and
-/// equal numbers of sections, drives and axes. Their cameras must have equal names, and images of equal size
-/// and kind.
+/// Returns why `truth` and `model` do not match, or "" if they do. Both rigs must have equal kinds of arms
+/// and equal numbers of sections, drives and axes. The cameras of both rigs must have equal names, and images
+/// of equal size and kind.
 [[nodiscard]] std::string truth_problem(const RigConfig& model, const RigConfig& truth);
 
 }  // namespace flexura

@@ -16,9 +16,9 @@
 namespace flexura {
 
 /// The inputs of a rod over time: its motors or commanded bends, and its weight and loads, which can be
-/// switched off. They are functions of time and of the commands up to this time.
+/// switched off. The inputs are functions of time and of the commands up to this time.
 ///
-/// With a drive, its spools pull the tendons in, starting from the pretension. A motor whose load exceeds its
+/// With a drive, the spools pull the tendons in, starting from the pretension. A motor whose load exceeds its
 /// pull-out torque loses the steps of one turn of its field at a time. Without a drive, tendon displacements
 /// are those of arcs with the commanded bends, plus those of pull(). Commanded stretches are factors on the
 /// sections' lengths.
@@ -57,8 +57,8 @@ class RodInputs {
   [[nodiscard]] const Rod& rod() const { return rod_; }
   /// Returns a vector of zeros, one per axis, for lost microsteps; empty without a drive.
   [[nodiscard]] std::vector<double> nothing_lost() const;
-  /// Returns by how much each tendon is pulled in relative to the rod at rest, m. It includes the pretension,
-  /// and the `lost` microsteps of each motor are subtracted.
+  /// Returns by how much each tendon is pulled in relative to the rod at rest, m. The result includes the
+  /// pretension, and the `lost` microsteps of each motor are subtracted.
   [[nodiscard]] std::vector<double> displacements(double time, const std::vector<double>& lost) const;
   /// Returns the sections' unloaded lengths, as factors on their nominal lengths.
   [[nodiscard]] std::vector<double> rest_stretches(double time) const;

@@ -27,8 +27,8 @@ class RodTube {
   std::vector<std::vector<RodNode>> nodes_;  // For each section.
 };
 
-/// Returns the positions on the rod, from base to tip, between which RodTube interpolates the backbone. They
-/// divide each section into equal parts. The backbone has two arcs between successive positions.
+/// Returns the positions on the rod, from base to tip, between which RodTube interpolates the backbone. The
+/// positions divide each section into equal parts. The backbone has two arcs between successive positions.
 [[nodiscard]] std::vector<RodPlace> tube_places(const Rod& rod);
 
 }  // namespace flexura

@@ -16,8 +16,8 @@
 
 namespace flexura {
 
-/// An arm without drives that moves its sections to commanded shapes. Its measured shape depends only on the
-/// commands and the rates of the sections.
+/// An arm without drives that moves its sections to commanded shapes. The measured shape of this arm depends
+/// only on the commands and the rates of the sections.
 class SimulatedBends : public ArmPort {
  public:
   /// The arguments are those of SimulatedArm. The plant must outlive this object.

@@ -38,9 +38,10 @@ inline constexpr int frames_kept = 16;
 /// backbones must be available for this time in the past.
 [[nodiscard]] double frame_horizon(const SensorConfig& sensor);
 
-/// A camera that exposes frames at its frame rate from time 0, delays them and loses some. It renders only
-/// requested frames. Several cameras of a rig can be queried at once, each from its own thread, if the
-/// TakePicture functions are thread-safe. Meanwhile, no thread may wait for the clock or send commands.
+/// A camera that exposes frames at its frame rate from time 0, delays them and loses some. A SimulatedCamera
+/// renders only requested frames. Several cameras of a rig can be queried at once, each from its own thread,
+/// if the TakePicture functions are thread-safe. Meanwhile, no thread may wait for the clock or send
+/// commands.
 class SimulatedCamera : public CameraPort {
  public:
   /// `shot` describes the content of the frames. The camera sets its members `frame`, `start` and
@@ -51,7 +52,7 @@ class SimulatedCamera : public CameraPort {
   Outcome<std::optional<Frame>> wait(double timeout) override;
 
   /// Returns all available frames that were neither returned nor skipped, the oldest first, even if the link
-  /// is interrupted. It is meant for recording, not for algorithms.
+  /// is interrupted. This function is meant for recording, not for algorithms.
   [[nodiscard]] std::vector<Frame> all_new();
   /// Returns whether all_new() would return a frame.
   [[nodiscard]] bool has_new() const;

@@ -21,8 +21,8 @@ class SimulatedClock : public ClockPort {
     now_ = time;
     if (passed_) passed_(now_);
   }
-  /// Registers a function that is called with the new time after each advance of the clock. It advances the
-  /// simulated world.
+  /// Registers a function that is called with the new time after each advance of the clock. The function
+  /// advances the simulated world.
   void when_passed(std::function<void(double)> passed) { passed_ = std::move(passed); }
 
  private:

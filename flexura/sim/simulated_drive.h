@@ -13,8 +13,9 @@
 
 namespace flexura {
 
-/// The controller of a simulated drive. It counts the microsteps of its motors, and sends its commands also
-/// to the plant's true motors. The load positions that it reports are computed with the model's backlash.
+/// The controller of a simulated drive. The controller counts the microsteps of its motors, and sends its
+/// commands also to the plant's true motors. The load positions that it reports are computed with the model's
+/// backlash.
 class SimulatedDrive : public DrivePort {
  public:
   /// Starts at rest at the motor positions `start`, microsteps. Motors have the limits of `real`. The plant

@@ -51,7 +51,7 @@ class ThreeAxes {
 class SimulatedHead : public HeadPort {
  public:
   /// Creates the head of the true `camera` in its initial state, where its counters have the values
-  /// `counted`. It can be queried back to `horizon` s before the present time.
+  /// `counted`. The head can be queried back to `horizon` s before the present time.
   SimulatedHead(const Camera& camera, const HeadState& counted, const ClockPort& clock, double horizon);
 
   CommandOutcome command(const HeadState& state) override;
@@ -68,8 +68,8 @@ class SimulatedHead : public HeadPort {
   ThreeAxes axes_;
 };
 
-/// A stage that moves along the mount's axes (right, down, forward), m. Its motors are modelled as those of
-/// SimulatedHead.
+/// A stage that moves along the mount's axes (right, down, forward), m. The motors of a stage are modelled as
+/// those of SimulatedHead.
 class SimulatedStage : public StagePort {
  public:
   /// Creates the stage of the true `camera`. The arguments are as for SimulatedHead.

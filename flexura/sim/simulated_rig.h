@@ -37,7 +37,7 @@ class SimulatedView {
   [[nodiscard]] SimulatedStage& stage() { return stage_; }
   /// Returns the simulated camera of ports(), with access to frames for recording.
   [[nodiscard]] SimulatedCamera& camera() { return camera_; }
-  /// Returns ports to devices that this object owns. They are valid as long as this object exists.
+  /// Returns ports to devices that this object owns. The ports are valid as long as this object exists.
   [[nodiscard]] CameraPorts ports() { return {description_.config().name, &camera_, &head_, &stage_}; }
 
  private:

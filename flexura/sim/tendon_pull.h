@@ -25,7 +25,8 @@ struct PulledTendon {
   /// A section without a limit is assumed to bend by up to a full turn.
   std::array<double, 2> range = {0, 0};
   /// Displacement of each tendon per metre of this tendon for which no tendon opposes the motion; 1 for this
-  /// tendon. It is computed for the straight arm and a bend of the section where this tendon ends.
+  /// tendon. The displacements are computed for the straight arm and a bend of the section where this tendon
+  /// ends.
   std::vector<double> together;
   /// Points of the route from the base to the tendon's end, m: arc length on the rod at rest, and offset (x,
   /// y) in the cross-section.

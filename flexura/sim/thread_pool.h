@@ -11,11 +11,12 @@
 
 namespace flexura {
 
-/// A pool of threads that run jobs in parallel and sleep in between. It renders frames with one thread per
-/// camera.
+/// A pool of threads that run jobs in parallel and sleep in between. The simulator renders frames with one
+/// thread per camera.
 class ThreadPool {
  public:
-  using Job = std::function<void(std::size_t)>;  ///< Job function. Its argument is the number of the job.
+  using Job = std::function<void(std::size_t)>;  ///< Job function. The argument of the function is the number
+                                                 ///< of the job.
 
   /// Creates a pool of `threads` >= 1 threads, including the caller's thread.
   explicit ThreadPool(std::size_t threads);
@@ -25,7 +26,7 @@ class ThreadPool {
 
   /// Calls job(0) ... job(count - 1) and returns when all are done. The assignment of jobs to threads is
   /// fixed: jobs i and i + threads() run on one thread, in this order. A thread stops at its first exception.
-  /// run() rethrows the exception of the thread with the lowest number. It must not be called from two
+  /// run() rethrows the exception of the thread with the lowest number. run() must not be called from two
   /// threads at once.
   void run(std::size_t count, const Job& job);
 

@@ -7,7 +7,7 @@
 namespace flexura {
 
 /// A running program that reads its standard input from this process. The program writes to the standard
-/// error of this process. Its standard output is discarded.
+/// error of this process. The standard output of the program is discarded.
 class ChildProcess {
  public:
   /// Starts `arguments[0]` from the PATH. Throws std::runtime_error if the program does not exist.

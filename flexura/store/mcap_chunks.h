@@ -15,7 +15,7 @@ namespace flexura {
 /// Largest decompressed size of a compressed chunk, bytes. The writer does not compress larger chunks.
 inline constexpr std::size_t mcap_most_chunk = std::size_t{128} << 20;
 
-/// Gives access to the messages in a log file and in its compressed chunks. It decompresses a chunk when one
+/// Gives access to the messages in a log file and in its compressed chunks. A chunk is decompressed when one
 /// of its messages is read, and keeps the last few chunks. Several threads may read at once.
 class McapChunks {
  public:
@@ -25,7 +25,7 @@ class McapChunks {
   /// Chunk number of messages that are not compressed: those are in the file itself.
   static constexpr std::uint32_t plain = 0;
 
-  /// Adds a chunk of zstd frames with `size` bytes of content. Returns its number, from 1.
+  /// Adds a chunk of zstd frames with `size` bytes of content. Returns the number of the chunk, from 1.
   std::uint32_t add(std::span<const std::byte> frames, std::size_t size);
   /// Returns the content of a chunk. Throws std::runtime_error if it does not decompress to the size given to
   /// add().

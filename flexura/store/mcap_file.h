@@ -7,7 +7,7 @@
 
 namespace flexura {
 
-/// A new file to which bytes are appended. It never replaces an existing file.
+/// A new file to which bytes are appended. A new file never replaces an existing file.
 class AppendFile {
  public:
   /// Creates the file. Throws std::system_error with the path if it already exists, its folder does not
@@ -24,7 +24,7 @@ class AppendFile {
   [[nodiscard]] bool is_open() const { return descriptor_ >= 0; }
 
   /// Passes the bytes to the operating system before it returns, so that they are not lost if the process
-  /// ends. If it cannot write all bytes, it removes those already written, closes the file and throws
+  /// ends. If not all bytes can be written, removes those already written, closes the file and throws
   /// std::system_error with the path.
   void append(std::span<const std::byte> bytes);
   /// Closes the file. Throws std::system_error with the path if the system reports a late failure. May be
@@ -46,7 +46,8 @@ class MappedFile {
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
-  /// Returns the bytes that the file had when it was opened. They are valid as long as this object exists.
+  /// Returns the bytes that the file had when it was opened. The bytes are valid as long as this object
+  /// exists.
   [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
 
  private:

@@ -86,7 +86,7 @@ class McapBytes {
   void put(std::string_view text);
   void put(const std::string& text) { put(std::string_view(text)); }
 
-  /// Appends a record. Its content is the output of `write`.
+  /// Appends a record. The content of the record is the output of `write`.
   template <typename Write>
   void record(McapOp op, Write write) {
     put(static_cast<std::uint8_t>(op));

@@ -20,9 +20,9 @@ struct ByteBuffer {
   [[nodiscard]] std::span<const std::byte> bytes() const { return {start.get(), size}; }
 };
 
-/// Returns the content of frames of Zstandard that must decompress to exactly `size` bytes. It never writes
-/// more bytes. Before it allocates memory, it refuses a size that the frames cannot contain. Throws
-/// std::runtime_error with the reason for invalid frames.
+/// Returns the content of frames of Zstandard that must decompress to exactly `size` bytes. The function
+/// never writes more bytes. Before allocating memory, the function refuses a size that the frames cannot
+/// contain. Throws std::runtime_error with the reason for invalid frames.
 [[nodiscard]] ByteBuffer unzstd(std::span<const std::byte> frames, std::size_t size);
 
 }  // namespace flexura

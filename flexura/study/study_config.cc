@@ -40,7 +40,8 @@ const std::vector<Parameter>& parameters() {
        &V::distance,
        Unit::metre,
        {.min = 1e-6, .max = 1e6},
-       "Distance of the camera from the target's centre, at constant direction and orientation."},
+       "Distance of the camera from the target's centre. The direction from the target to the camera and the "
+       "orientation of the camera are constant."},
       {"mount_x", &V::mount_x, Unit::metre, place_range,
        "Position of the mount along X, at constant orientation."},
       {"mount_y", &V::mount_y, Unit::metre, place_range,
@@ -56,16 +57,21 @@ const std::vector<Parameter>& parameters() {
       {"stage_y", &V::stage_y, Unit::metre, slide_range, "Stage position downwards."},
       {"stage_z", &V::stage_z, Unit::metre, slide_range, "Stage position forwards."},
       {"focal_length", &V::focal_length, Unit::none, focal_length_range,
-       "Focal length fx at the current zoom, px, at constant ratio fy/fx."},
-      {"fx", &V::fx, Unit::none, focal_length_range, "Horizontal focal length only, px."},
-      {"fy", &V::fy, Unit::none, focal_length_range, "Vertical focal length only, px."},
+       "Focal length fx at the current zoom, px. The ratio fy/fx is constant."},
+      {"fx", &V::fx, Unit::none, focal_length_range,
+       "Horizontal focal length, px. The vertical focal length is constant."},
+      {"fy", &V::fy, Unit::none, focal_length_range,
+       "Vertical focal length, px. The horizontal focal length is constant."},
       {"cx", &V::cx, Unit::none, principal_point_range, "Column of the principal point, px."},
       {"cy", &V::cy, Unit::none, principal_point_range, "Row of the principal point, px."},
-      {"k1", &V::k1, Unit::none, distortion_range, "Radial distortion, second power of the radius."},
-      {"k2", &V::k2, Unit::none, distortion_range, "Radial distortion, fourth power of the radius."},
-      {"p1", &V::p1, Unit::none, distortion_range, "Tangential distortion, vertical."},
-      {"p2", &V::p2, Unit::none, distortion_range, "Tangential distortion, horizontal."},
-      {"k3", &V::k3, Unit::none, distortion_range, "Radial distortion, sixth power of the radius."},
+      {"k1", &V::k1, Unit::none, distortion_range,
+       "Coefficient of radial distortion with the second power of the radius."},
+      {"k2", &V::k2, Unit::none, distortion_range,
+       "Coefficient of radial distortion with the fourth power of the radius."},
+      {"p1", &V::p1, Unit::none, distortion_range, "Coefficient of vertical tangential distortion."},
+      {"p2", &V::p2, Unit::none, distortion_range, "Coefficient of horizontal tangential distortion."},
+      {"k3", &V::k3, Unit::none, distortion_range,
+       "Coefficient of radial distortion with the sixth power of the radius."},
       {"tilt_axis_x", &V::tilt_axis_x, Unit::metre, slide_range,
        "Distance of the tilt axis to the right of the pan axis."},
       {"tilt_axis_y", &V::tilt_axis_y, Unit::metre, slide_range,
@@ -108,7 +114,8 @@ std::string camera_names(const std::vector<CameraConfig>& cameras) {
 
 const Table<VaryConfig>& fields_of(const VaryConfig*) {
   static const auto table = [] {
-    Table<VaryConfig> made("vary", "Varied parameter of the camera: exactly one of these, as [first, last].");
+    Table<VaryConfig> made(
+        "vary", "Varied parameter of the camera. Exactly one of these keys has a value [first, last].");
     for (const Parameter& one : parameters())
       made.field(
           one.name, one.member,
@@ -121,12 +128,12 @@ const Table<VaryConfig>& fields_of(const VaryConfig*) {
 const Table<StudyTargetConfig>& fields_of(const StudyTargetConfig*) {
   static const auto table =
       Table<StudyTargetConfig>("target",
-                               "A circle and its inscribed square with horizontal and vertical edges: "
-                               "parallel to OX and OY in the XOY plane.")
+                               "A circle and its inscribed square, whose edges are horizontal and vertical. "
+                               "In the XOY plane the edges are parallel to OX and OY.")
           .field("center", &StudyTargetConfig::center,
                  {.meaning = "Centre.", .unit = Unit::metre, .range = between(-1e6, 1e6)})
           .field("normal", &StudyTargetConfig::normal,
-                 {.meaning = "Normal of the target's plane. Its length must be above 0.",
+                 {.meaning = "Normal of the target's plane. The length of the normal must be above 0.",
                   .range = between(-1e6, 1e6)})
           .field("radius", &StudyTargetConfig::radius,
                  {.meaning = "Radius of the circle.", .unit = Unit::metre, .range = between(1e-6, 1e6)})
@@ -140,21 +147,22 @@ const Table<StudyTargetConfig>& fields_of(const StudyTargetConfig*) {
 const Table<StudyTask>& fields_of(const StudyTask*) {
   static const auto table =
       Table<StudyTask>("study",
-                       "Computes image distances of a target while one camera parameter varies, as tables "
-                       "and plots. The arm keeps its shape, and no time passes.")
+                       "Computes distances in the image of a target while one camera parameter varies. "
+                       "Results are tables and plots. The arm keeps its shape, and no time passes.")
           .field("name", &StudyTask::name,
                  {.meaning = "Name of the task in results.", .default_text = "its kind"})
           .field("camera", &StudyTask::camera,
                  {.meaning = "Name of the camera.", .default_text = "the first camera"})
           .field("vary", &StudyTask::vary,
                  {.meaning = "Varied parameter, as `vary.orbit_deg = [-60, 60]`.", .required = true})
-          .field(
-              "points", &StudyTask::points,
-              {.meaning = "Number of values, equally spaced from first to last.", .range = between(2, 10000)})
+          .field("points", &StudyTask::points,
+                 {.meaning = "Number of values of the varied parameter, equally spaced from the first to the "
+                             "last value.",
+                  .range = between(2, 10000)})
           .field("measure", &StudyTask::measure,
-                 {.meaning = "Whether the square is also rendered and measured in pictures, for a third "
-                             "column. It takes 0.1 s of computing time per value."})
-          .field("target", &StudyTask::target, {.meaning = "Target in the camera's view."});
+                 {.meaning = "Whether the target's square is also rendered and measured in pictures. The "
+                             "result is a third column. This takes 0.1 s of computing time per value."})
+          .field("target", &StudyTask::target, {.meaning = "Target that the camera sees."});
   return table;
 }
 

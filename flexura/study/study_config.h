@@ -41,7 +41,7 @@ struct Variation {
 /// Target of a study: a circle with an inscribed square.
 struct StudyTargetConfig {
   std::array<double, 3> center = {0, 0, 0};  ///< Centre in W, m.
-  /// Normal of the target's front, in W. Its length must be above 0.
+  /// Normal of the target's front, in W. The length of the normal must be above 0.
   std::array<double, 3> normal = {0, 0, 1};
   double radius = 0.5;  ///< Radius of the circle, m; at least 1e-6.
 };

@@ -20,7 +20,7 @@
 namespace flexura {
 
 /// One `[[task]]` of a file, of any kind. The header that declares the configuration of a kind also declares
-/// its table of fields and these functions. The functions below call them:
+/// its table of fields and the following functions, which the functions of this header call:
 ///   void check_keys(const KIND&, const Setup&, const std::string& path, Reader&);
 ///   std::unique_ptr<TaskRunner> runner_of(const KIND&, const Setup&, TaskLabel);
 /// Two further functions are optional:

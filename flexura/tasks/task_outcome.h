@@ -32,8 +32,8 @@ struct TaskOutcome {
                                     std::string success);
 
 /// Returns all outcomes in one line, grouped by nouns; "" without outcomes. For a single task with a noun,
-/// the line has its outcome. For several tasks, it has a total such as "3 of 3 servos converged, worst 0.08 %
-/// of the length rms".
+/// the line has its outcome. For several tasks, the line has a total such as "3 of 3 servos converged, worst
+/// 0.08 % of the length rms".
 [[nodiscard]] std::string total_of(const std::vector<TaskOutcome>& outcomes);
 
 /// Returns the outcomes as a list of tables: `task`, `kind`, `reached`, `text`.

@@ -14,7 +14,8 @@ class Background {
  public:
   /// Function that is called on the session's thread after a job; may be empty.
   using After = std::function<void()>;
-  using Job = std::function<After()>;  ///< Work of a job. If it throws an exception, the After rethrows it.
+  using Job = std::function<After()>;  ///< Work of a job. If the job throws an exception, `After` rethrows
+                                       ///< the exception.
 
   virtual ~Background() = default;
   Background() = default;

@@ -10,7 +10,7 @@ enum class Condition : std::uint8_t {
   idle,     ///< Nothing moves, and no tasks run.
   moving,   ///< A client moves the arm.
   running,  ///< Tasks run.
-  done,     ///< Tasks are done, and no client has moved anything since then.
+  done,     ///< All tasks are done, and no client has moved the rig since the last task.
   halted,   ///< A client or the program has stopped the motion.
   failed,   ///< Tasks have failed.
   unsafe,   ///< The arm violates a limit or has a forbidden contact, now or during the run's tasks.

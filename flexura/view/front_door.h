@@ -27,7 +27,7 @@ namespace flexura {
 class FrontDoor : public Host {
  public:
   struct Config {
-    /// Returns the time, s, which never decreases. It is called from any thread.
+    /// Returns the time, s, which never decreases. The function is called from any thread.
     std::function<double()> clock;
     double interval = 1.0 / 60;  ///< Interval between advances of the viewer, s.
     std::size_t waiting_of_a_client =

@@ -74,7 +74,8 @@ class LiveRig {
   /// changes nothing and throws std::runtime_error. Throws std::invalid_argument for an invalid push.
   void push(const std::optional<PlantPush>& push);
   [[nodiscard]] bool is_pushed() { return simulated_->arm().plant().pushed(rig_time(now())).has_value(); }
-  /// Returns whether the arm is pushed or oscillates. Then its motion differs from the commanded motion.
+  /// Returns whether the arm is pushed or oscillates. Then the arm's motion differs from the commanded
+  /// motion.
   [[nodiscard]] bool is_yielding();
   /// Returns a one-line warning about the present state of the arm, or "".
   [[nodiscard]] std::string warning() { return simulated_->arm().plant().warning(rig_time(now())); }
@@ -107,8 +108,8 @@ class LiveRig {
 [[nodiscard]] std::vector<ContactSample> contact_samples(const ViewedRig& rig,
                                                          const std::vector<ContactMessage>& contacts);
 
-/// Returns the state message of an arm with the command `state` at `time`, s, with the cameras at `stances`.
-/// If `truth` is not null, it is the shape of the arm.
+/// Returns the state message of an arm with the command `state` at `time`, s, with the axis positions
+/// `stances` of the cameras. If `truth` is not null, it is the shape of the arm.
 [[nodiscard]] StateMessage still_state(const ViewedRig& rig, double time, const ArmState& state,
                                        const std::vector<CameraStance>& stances,
                                        const TrueArm* truth = nullptr);

@@ -29,7 +29,7 @@ class LiveSession : public PictureSession {
  public:
   struct Config {
     double start = 0;  ///< Initial time of the clock of advance(), s.
-    /// Folder for the results of runs. If it exists, -2, -3, ... is appended.
+    /// Folder for the results of runs. If the folder exists, -2, -3, ... is appended.
     std::filesystem::path results;
     /// A run that was started outside this session. Clients can change its speed, but can neither cancel nor
     /// halt it, and cannot move anything during the run.

@@ -16,8 +16,8 @@
 
 namespace flexura {
 
-/// Common base class of sessions with live rigs and with recordings. It sends the cameras' pictures to the
-/// clients.
+/// Common base class of sessions with live rigs and with recordings. A PictureSession sends the cameras'
+/// pictures to the clients.
 class PictureSession : public Session {
  public:
   void closed(ClientId client) override;
@@ -40,8 +40,8 @@ class PictureSession : public Session {
     void operator()(const PingRequest& ping) const;
   };
 
-  /// Function that returns a picture. It is called on the thread of Lane::measures. It throws an exception if
-  /// there is no picture.
+  /// Function that returns a picture. The function is called on the thread of Lane::measures. The function
+  /// throws an exception if there is no picture.
   using Look = std::function<SeenPicture()>;
   /// Returns a function for the picture that a client sees. Throws ViewRefusal if the client sees no picture.
   [[nodiscard]] virtual Look look(const ImageStreams::Key& key) = 0;

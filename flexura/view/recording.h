@@ -20,7 +20,7 @@
 namespace flexura {
 
 /// Results of a run, prepared for viewing: the content of the log by time. Immutable, so that threads can
-/// share it. For a run that was killed, it has the log up to the last complete chunk.
+/// share it. For a run that was killed, a Recording has the log up to the last complete chunk.
 class Recording {
  public:
   /// Opens a results folder of `flexura run`. Throws InputError if the folder is not a results folder, or if
@@ -47,8 +47,8 @@ class Recording {
   /// Returns the arm's shape in state number `place`. Throws InputError if the logged shape does not fit the
   /// arm.
   [[nodiscard]] ArmState state(std::size_t place) const;
-  /// Returns the run's condition at a time, s. It is `unsafe` while a limit is violated, and otherwise
-  /// `running`. At the end, it is the condition in the results.
+  /// Returns the run's condition at a time, s. The condition is `unsafe` while a limit is violated, and
+  /// otherwise `running`. At the end, the result is the condition in the results file.
   [[nodiscard]] Conditioned condition(double time) const;
 
   /// Returns how many images of a camera the log has.
@@ -90,7 +90,8 @@ class Recording {
     std::vector<double> lost_steps;        ///< Microsteps lost by each motor; empty: unknown at that time.
     std::vector<ContactMessage> contacts;  ///< Contacts of the arm; empty: no contacts.
   };
-  /// Returns the forces at a time, s. Values of invalid messages count as unknown.
+  /// Returns the logged tendon tensions, contacts and other forces at a time, s. Values of invalid messages
+  /// count as unknown.
   [[nodiscard]] LoggedForces forces(double time) const;
   /// Returns whether the log has energies.
   [[nodiscard]] bool has_energy() const { return !energies_.empty(); }

@@ -46,7 +46,8 @@ class RecordingSession : public PictureSession {
   void send_no_image(const ImageStreams::Key& key, double time);
   void report_pixel(const ImageStreams::Key& key, int u, int v, Reply reply);
   /// Returns the number of the image shown at a time, s: its index among the camera's logged images;
-  /// std::nullopt before the first image. For a camera without logged images, it is the index of a state.
+  /// std::nullopt before the first image. For a camera without logged images, the result is the index of a
+  /// state.
   [[nodiscard]] std::optional<std::int64_t> image_place(std::size_t camera, double time) const;
   /// Returns the number of the image shown at a time, s. Throws ViewRefusal if there is no image.
   [[nodiscard]] std::int64_t require_image(std::size_t camera, double time) const;

@@ -16,7 +16,7 @@ class RunPace {
   /// Changes the speed from now on.
   void set_speed(double speed);
   /// Returns the time up to which the run may advance, s. `passed`: time of the clock since the last call, s.
-  /// `reached`: present time of the run, s. It is infinite for speed 0.
+  /// `reached`: present time of the run, s. The result is infinite for speed 0.
   [[nodiscard]] double next(double passed, double reached);
   /// Returns the recent speed of the run, in run seconds per second of the clock, if the run is slower than
   /// `speed`. Otherwise returns std::nullopt.

@@ -30,8 +30,8 @@ struct SeenPicture {
 [[nodiscard]] std::span<const std::string_view> layer_names();
 
 /// Returns the answer to the request `measure`: measurements of the arm in the picture, as layers with the
-/// requested names (docs/viewer-protocol.md). It corrects the perspective offset between the middle of the
-/// tube's image and the image of the backbone.
+/// requested names (docs/viewer-protocol.md). The function corrects the perspective offset between the middle
+/// of the tube's image and the image of the backbone.
 [[nodiscard]] Node measure_answer(const ViewedRig& rig, const SeenPicture& seen,
                                   const std::vector<std::string>& layers);
 

@@ -11,15 +11,15 @@
 
 namespace flexura {
 
-/// Selects at most `points` values to draw, and returns their indices in ascending order. They are the first
-/// and the last value, and the minima and maxima of all curves in intervals of equal length. Values at the
-/// borders of gaps (NaN) are selected in addition. If there are few values, returns all indices. All curves
-/// must have the same length.
+/// Selects at most `points` values to draw, and returns their indices in ascending order. The selected values
+/// are the first and the last value, and the minima and maxima of all curves in intervals of equal length.
+/// Values at the borders of gaps (NaN) are selected in addition. If there are few values, returns all
+/// indices. All curves must have the same length.
 [[nodiscard]] std::vector<std::size_t> thinned(std::span<const std::vector<double>> curves,
                                                std::size_t points);
 
-/// Quantities of a recording over time: bends, cord angles and archings, stretches, and the tip. It also has
-/// the errors of servos, which are null while no servo controls the arm.
+/// Quantities of a recording over time: bends, cord angles and archings, stretches, and the tip. A
+/// SeriesTable also has the errors of servos, which are null while no servo controls the arm.
 class SeriesTable {
  public:
   explicit SeriesTable(const Recording& recording);

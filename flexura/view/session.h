@@ -13,7 +13,7 @@
 
 namespace flexura {
 
-/// Exception for a request that a session refuses. It has the reason in one line.
+/// Exception for a request that a session refuses. The exception has the reason in one line.
 class ViewRefusal : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -65,11 +65,11 @@ class Session {
   [[nodiscard]] virtual Hello hello() const = 0;
   virtual void opened(ClientId client) = 0;
   virtual void closed(ClientId client) = 0;
-  /// Handles a client's request. Calls `reply` exactly once on this thread, immediately or later. If it
-  /// refuses the request, it throws ViewRefusal instead.
+  /// Handles a client's request. Calls `reply` exactly once on this thread, immediately or later. To refuse
+  /// the request, throws ViewRefusal instead.
   virtual void take(ClientId client, const Ask& ask, Reply reply) = 0;
-  /// Calls `answer` exactly once with the document, on any thread, immediately or later. If it refuses the
-  /// request, it throws ViewRefusal instead.
+  /// Calls `answer` exactly once with the document, on any thread, immediately or later. To refuse the
+  /// request, throws ViewRefusal instead.
   virtual void take(const Document& document, std::function<void(HttpAnswer)> answer) = 0;
   /// Returns the state that a client sees. Commanded positions are used where they exist.
   [[nodiscard]] virtual RigInstant instant(ClientId client) = 0;

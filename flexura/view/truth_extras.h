@@ -23,7 +23,7 @@ using LoggedArm = std::vector<Pose>;
 /// form an arm.
 [[nodiscard]] std::vector<ArmSample> samples_of(const LoggedArm& arm);
 
-/// Adds the true arm as a ghost if it differs from the commanded arm. It differs if the distance between
+/// Adds the true arm as a ghost if it differs from the commanded arm. The arms differ if the distance between
 /// points at an equal fraction of the length exceeds 0.1 mm. Adds nothing if the extras already have a ghost
 /// of the true arm.
 void add_true_arm(const std::vector<ArmSample>& truth, const Backbone& commanded, Extras& extras);

@@ -74,7 +74,8 @@ class ViewedRig {
   /// Returns the true positions of a camera's head and stage for measured positions, without backlash and
   /// quantisation. Differences between truth and model at the start remain.
   [[nodiscard]] CameraStance stance(std::size_t camera, const CameraReading& reading) const;
-  /// Returns the measured positions of a camera's head and stage for true positions: the inverse of stance().
+  /// Returns the positions that a camera's head and stage report at the true axis positions `stance`. This is
+  /// the inverse of stance().
   [[nodiscard]] CameraReading reading(std::size_t camera, const CameraStance& stance) const;
   /// Returns the camera's view according to its model and measured positions.
   [[nodiscard]] View nominal_view(std::size_t camera, const CameraReading& reading) const;
@@ -82,8 +83,8 @@ class ViewedRig {
 
 using ViewedRigPtr = std::shared_ptr<const ViewedRig>;
 
-/// Returns the sample of a camera at the true position `stance`. Its commanded positions are the measured
-/// positions at `stance`.
+/// Returns the sample of a camera with the true axis positions `stance`. The commanded positions in the
+/// sample are the positions that the head and stage report.
 [[nodiscard]] CameraSample camera_sample(const ViewedRig& rig, std::size_t camera,
                                          const CameraStance& stance);
 
@@ -93,8 +94,8 @@ struct ValueShot {
   std::shared_ptr<const std::vector<Instant>> instants;  ///< States that the frame shows.
 };
 
-/// Returns a frame for rendering. `instants`: at least one state in ascending order of time; the frame
-/// interpolates between them. The exposure starts at `start` (s).
+/// Returns the data that are needed to render a frame. `instants`: at least one state in ascending order of
+/// time; the frame interpolates between them. The exposure starts at `start` (s).
 [[nodiscard]] ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t frame,
                                    double start, std::vector<Instant> instants);
 
@@ -110,8 +111,8 @@ struct ValueShot {
 [[nodiscard]] bool show_the_same(const ValueShot& a, const ValueShot& b);
 
 /// Returns the times of the instants that value_shot() needs for a frame that starts at `start` (s). For an
-/// instantaneous exposure, it is one time. Otherwise, the times are so close that the motion between them is
-/// nearly linear.
+/// instantaneous exposure, there is one time. Otherwise, the times are so close that the motion between them
+/// is nearly linear.
 [[nodiscard]] std::vector<double> times_of_instants(const SensorConfig& sensor, double start);
 
 }  // namespace flexura

@@ -308,7 +308,7 @@ TEST_F(Vivid, SetsTheGainAndSwitchesTheAutomaticOff) {
 TEST_F(Vivid, SaysWhatTheCameraLacks) {
   V4l2Config wrong = config();
   wrong.gain = 300;
-  EXPECT_THAT(fault_with(wrong, camera()), HasSubstr("it made 255 of gain = 300"));
+  EXPECT_THAT(fault_with(wrong, camera()), HasSubstr("it set 255 instead of gain = 300"));
   wrong = config();
   wrong.exposure = 0.01;
   EXPECT_THAT(fault_with(wrong, camera()), HasSubstr("its exposure cannot be set: remove exposure"));
@@ -316,7 +316,7 @@ TEST_F(Vivid, SaysWhatTheCameraLacks) {
   small.sensor.width = 100, small.sensor.height = 100;
   EXPECT_THAT(fault_with(config(), small), HasSubstr("it offers 320 x 180"));
   EXPECT_THAT(fault_with(config(V4l2Format::mjpeg), camera()),
-              HasSubstr("it gives no 320 x 180 pixels in a format"));
+              HasSubstr("it has no format with 320 x 180 pixels"));
   const auto head = V4l2Head::open({.device = device_.path()}, "front", clock_);
   ASSERT_FALSE(head);
   EXPECT_THAT(head.fault()->what, HasSubstr("it has no absolute pan, tilt or zoom"));

@@ -76,8 +76,9 @@ const std::vector<std::string>& names_of(const CalibrateMethod*) {
 
 const Table<CalibrateRequiredStd>& fields_of(const CalibrateRequiredStd*) {
   static const auto table =
-      Table<CalibrateRequiredStd>(
-          "required_std", "Standard deviations of the calibrated rig below which no more pictures are taken.")
+      Table<CalibrateRequiredStd>("required_std",
+                                  "Standard deviations of the calibrated rig. When all are below these "
+                                  "values, no more pictures are taken.")
           .field("angle", &CalibrateRequiredStd::angle,
                  {.meaning = "Standard deviation of the angle between the optical axes.",
                   .unit = Unit::radian,
@@ -108,8 +109,8 @@ const Table<CalibrateCameraPrior>& fields_of(const CalibrateCameraPrior*) {
                  {.meaning = "Standard deviation of the principal point along each axis, px.",
                   .range = between(0, 1000)})
           .field("zero_std", &CalibrateCameraPrior::zero_std,
-                 {.meaning = "Standard deviation of a head's zero offsets. For pan, it has an effect only if "
-                             "the camera's stage moves.",
+                 {.meaning = "Standard deviation of a head's zero offsets. The zero offset of pan has an "
+                             "effect only if the camera's stage moves.",
                   .unit = Unit::radian,
                   .range = between(0, 1)})
           .field("exact_heads", &CalibrateCameraPrior::exact_heads,
@@ -127,21 +128,21 @@ const Table<CalibrateArmPrior>& fields_of(const CalibrateArmPrior*) {
   static const auto table =
       Table<CalibrateArmPrior>("arm_prior", "Prior standard deviations of the file's model of the arm.")
           .field("length_std", &CalibrateArmPrior::length_std,
-                 {.meaning = "Relative standard deviation of each section's length. The lengths are the "
-                             "calibration's only measure of distances.",
+                 {.meaning = "Relative standard deviation of each section's length. The lengths of the "
+                             "sections are the only information about absolute distances.",
                   .range = between(0, 0.1)})
-          .field(
-              "response_std", &CalibrateArmPrior::response_std,
-              {.meaning =
-                   "Standard deviation of coefficients of model errors that are equal in all poses. A bend "
-                   "of 1 rad of any section changes the bend of any section by such a coefficient, rad.",
-               .range = between(0, 1),
-               .default_text = "0.2 with `arm.model = \"static\"` or `\"dynamic\"`, otherwise 0"})
-          .field("pose_response_std", &CalibrateArmPrior::pose_response_std,
-                 {.meaning = "Standard deviation of additional coefficients of this kind, which differ from "
-                             "pose to pose.",
+          .field("response_std", &CalibrateArmPrior::response_std,
+                 {.meaning = "Standard deviation of the coefficients of the arm's response error, in rad per "
+                             "rad. A coefficient is the error of the bend of one section due to a bend of 1 "
+                             "rad of the same or another section. A coefficient is the same in all poses.",
                   .range = between(0, 1),
-                  .default_text = "a quarter of response_std"});
+                  .default_text = "0.2 with `arm.model = \"static\"` or `\"dynamic\"`, otherwise 0"})
+          .field(
+              "pose_response_std", &CalibrateArmPrior::pose_response_std,
+              {.meaning =
+                   "Standard deviation of additional response coefficients, which differ from pose to pose.",
+               .range = between(0, 1),
+               .default_text = "a quarter of response_std"});
   return table;
 }
 
@@ -149,12 +150,12 @@ const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*) {
   static const auto table =
       Table<CalibrateLoopConfig>("loop", "Parameters of the paper's iterative methods.")
           .field("accepted", &CalibrateLoopConfig::accepted,
-                 {.meaning = "Tolerance of each offset measured in a picture, px.",
+                 {.meaning = "Largest offset, measured in a picture, at which an iteration ends, px.",
                   .range = above_up_to(0, 1000),
                   .default_text = "0.05 for etalon, 0.5 for arcs, 3 for -paper methods"})
           .field("zoom_accepted", &CalibrateLoopConfig::zoom_accepted,
-                 {.meaning =
-                      "Tolerance of the relative difference between the target's sizes in the two images.",
+                 {.meaning = "Largest relative difference between the target's sizes in the two images at "
+                             "which an iteration ends.",
                   .range = above_up_to(0, 1),
                   .default_text = "0.001; 0.01 for -paper methods"})
           .field("turn", &CalibrateLoopConfig::turn,
@@ -168,7 +169,7 @@ const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*) {
           .field("zoom_step", &CalibrateLoopConfig::zoom_step,
                  {.meaning = "Fixed relative step of a zoom, for etalon-paper.", .range = above_up_to(0, 1)})
           .field("arc", &CalibrateLoopConfig::arc,
-                 {.meaning = "Bend of the arm in an arc, for arcs and arcs-paper.",
+                 {.meaning = "Bend angle of the whole arm when it forms an arc, for arcs and arcs-paper.",
                   .unit = Unit::radian,
                   .range = between(0.2, 6),
                   .default_text = "90 degrees for arcs, 120 for arcs-paper"});
@@ -179,9 +180,9 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
   static const auto table =
       Table<CalibrateTask>(
           "calibrate",
-          "Calibrates two cameras, then points them at the arm along orthogonal axes with "
-          "equal zoom. The arm moves to several poses and returns to its first shape in between. Heads, "
-          "stages and zooms move too. The duration depends on how fast the estimate becomes accurate.")
+          "Calibrates two cameras, then points them at the arm along orthogonal axes with equal zoom. The "
+          "arm moves to several poses and returns to its first shape in between. Heads, stages and zooms "
+          "also move. The duration depends on the number of pictures that an accurate estimate needs.")
           .field("name", &CalibrateTask::name,
                  {.meaning = "Name of the task in results.", .default_text = "its kind"})
           .field("method", &CalibrateTask::method,
@@ -190,11 +191,12 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                       "arm. `bundle-etalon`: least squares from pictures of the calibration cylinder. "
                       "`etalon`: the paper's iterative method with the cylinder, with corrections. `arcs`: "
                       "the paper's iterative method with arcs of the arm in two planes, with corrections. "
-                      "`etalon-paper`, `arcs-paper`: these methods exactly as printed in the paper."})
+                      "`etalon-paper`, `arcs-paper`: the paper's methods without corrections."})
           .field("cameras", &CalibrateTask::cameras,
                  {.meaning = "Names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
           .field("pose", &CalibrateTask::pose,
-                 {.meaning = "Shapes of the arm in the pictures, as `pose = [{ bends = ... }, ...]`.",
+                 {.meaning =
+                      "Shapes of the arm of which pictures are taken, as `pose = [{ bends = ... }, ...]`.",
                   .count = {1, 100},
                   .default_text = "six poses in which every part of the arm bends to every side"})
           .field("images", &CalibrateTask::images,
@@ -208,7 +210,7 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
           .field("camera_prior", &CalibrateTask::camera_prior,
                  {.meaning = "Prior standard deviations of the file's camera models."})
           .field("arm_prior", &CalibrateTask::arm_prior,
-                 {.meaning = "Prior standard deviations of the file's model of the arm, for bundle."})
+                 {.meaning = "Prior standard deviations of the file's arm model, for the method `bundle`."})
           .field("loop", &CalibrateTask::loop, {.meaning = "Parameters of the paper's iterative methods."})
           .field("target", &CalibrateTask::target,
                  {.meaning = "Point at which both cameras look after the calibration.",
@@ -216,17 +218,17 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                   .range = between(-1e6, 1e6),
                   .default_text = "the middle of the arm in its first pose"})
           .field("stages", &CalibrateTask::stages,
-                 {.meaning = "Whether stages may move, within their travel."})
+                 {.meaning = "Whether the calibration may move stages, within their travel."})
           .field("zooms", &CalibrateTask::zooms,
                  {.meaning = "Focal lengths for the pictures, as factors on the initial focal length.",
                   .range = between(0.1, 100),
                   .count = {1, 10}})
           .field("move_duration", &CalibrateTask::move_duration,
-                 {.meaning = "Duration of the arm's motion to a pose or back.",
+                 {.meaning = "Duration of each motion of the arm to a pose or back.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest)})
           .field("pause", &CalibrateTask::pause,
-                 {.meaning = "Time to wait after each motion of the arm, until it stops swinging.",
+                 {.meaning = "Waiting time after each motion of the arm, so that vibrations decay.",
                   .unit = Unit::second,
                   .range = between(0, longest)})
           .field("settle_timeout", &CalibrateTask::settle_timeout,
@@ -238,11 +240,11 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                  {.meaning = "Longest wait for a picture.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest)})
-          .field(
-              "save", &CalibrateTask::save,
-              {.meaning = "Name of a .toml file for the calibrated rig, which experiments can include. It is "
-                          "written into this file's folder. An existing file with this name is renamed.",
-               .default_text = "not set; the results folder always has the rig as rig.toml"})
+          .field("save", &CalibrateTask::save,
+                 {.meaning =
+                      "Name of a .toml file for the calibrated rig, which experiments can include. The rig "
+                      "file is written into this file's folder. An existing file with this name is renamed.",
+                  .default_text = "not set; the results folder always has the rig as rig.toml"})
           .renamed("wanted", "required_std")
           .renamed("guess", "camera_prior");
   return table;

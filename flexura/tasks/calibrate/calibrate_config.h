@@ -134,8 +134,8 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 [[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& nominal,
                                      const StandConfig& stand);
 
-/// Returns the configuration of a LoopSession for a task with one of the paper's methods. It lacks the
-/// function that renders the simulator's pictures.
+/// Returns the configuration of a LoopSession for a task with one of the paper's methods. The result lacks
+/// the function that renders the simulator's pictures.
 [[nodiscard]] LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
                                      const std::vector<CameraConfig>& cameras, const StandConfig& stand);
 

@@ -32,9 +32,9 @@ const Table<FoundRigFile>& fields_of(const FoundRigFile*);
 void write_rig_file(const Setup& setup, const CalibrationRun& run, const std::string& saved_as,
                     const std::filesystem::path& results);
 
-/// Returns the result of a calibration in words. For the method "bundle", it states the standard deviation of
-/// the angle between the axes, and whether all required standard deviations are reached. For the paper's
-/// methods, it states the observed angle.
+/// Returns the result of a calibration in words. For the method "bundle", the text states the standard
+/// deviation of the angle between the axes, and whether all required standard deviations are reached. For the
+/// paper's methods, the text states the observed angle.
 [[nodiscard]] TaskOutcome calibration_outcome(const CalibrationRun& run);
 
 /// Returns the calibration's item in the list `calibrations` of a summary.
@@ -45,9 +45,9 @@ void write_rig_file(const Setup& setup, const CalibrationRun& run, const std::st
 [[nodiscard]] ImagePlot observed_picture(const CalibrationRun& run, const CameraObservation& observed,
                                          std::string heading);
 
-/// Returns the report's chapter on a calibration. It has a table of the rig's errors before and after the
-/// calibration, charts, and pictures from before and after. `number`: index among the calibrations, from 0,
-/// for names of figures.
+/// Returns the report's chapter on a calibration. The chapter has a table of the rig's errors before and
+/// after the calibration, charts, and pictures from before and after. `number`: index among the calibrations,
+/// from 0, for names of figures.
 [[nodiscard]] Chapter calibration_chapter(const CalibrationRun& run, std::size_t number);
 
 }  // namespace flexura

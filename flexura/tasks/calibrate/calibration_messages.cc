@@ -61,9 +61,10 @@ const Table<MarkerMessage>& fields_of(const MarkerMessage*) {
 
 const Table<SeenValueMessage>& fields_of(const SeenValueMessage*) {
   using M = SeenValueMessage;
-  static const auto table = Table<M>("flexura.SeenValue", "Number measured in a picture.")
-                                .field("name", &M::name, {.meaning = "Name of the number, with its unit."})
-                                .field("value", &M::value, {.meaning = "The number."});
+  static const auto table =
+      Table<M>("flexura.SeenValue", "Number measured in a picture.")
+          .field("name", &M::name, {.meaning = "Name of the measured number, with its unit."})
+          .field("value", &M::value, {.meaning = "The number."});
   return table;
 }
 
@@ -109,8 +110,10 @@ const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMess
           .field("outliers", &M::outliers,
                  {.meaning = "Number of observations that were excluded as outliers."})
           .field("angle", &M::angle,
-                 {.meaning = "Angle between the optical axes if the result were commanded now, rad."})
-          .field("angle_sigma", &M::angle_sigma, {.meaning = "Standard deviation of this angle, rad."})
+                 {.meaning =
+                      "Angle that the optical axes would have if the present result were commanded, rad."})
+          .field("angle_sigma", &M::angle_sigma,
+                 {.meaning = "Standard deviation of the angle between the optical axes, rad."})
           .field("focal", &M::focal, {.meaning = "Focal lengths of both cameras at the zoom ratio 1, px."})
           .field("focal_sigma", &M::focal_sigma,
                  {.meaning = "Relative standard deviations of the focal lengths."})

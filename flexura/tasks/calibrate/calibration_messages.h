@@ -31,7 +31,8 @@ struct CalibrationArcMessage {
   std::string camera;                        ///< Name of the camera.
   std::string plane;                         ///< "XOY" or "ZOY".
   std::vector<std::array<double, 2>> bends;  ///< Bends of the arm, rad.
-  std::vector<double> rotations;             ///< Rotations of the bends, rad.
+  std::vector<double>
+      rotations;  ///< Rotation of each section's bend direction about the axis of its base, rad.
   /// Motor positions, microsteps; missing for arms without drives.
   std::optional<std::vector<std::int64_t>> positions;
   PoseMessage pose;  ///< Pose of the ideal camera.
@@ -87,9 +88,10 @@ struct CalibrationDecisionMessage {
   std::optional<std::string> reason;  ///< Why no rig was found, or why the calibration ended early.
   double rms = 0;                     ///< RMS of the residuals, in standard deviations.
   std::int64_t outliers = 0;          ///< Number of outliers.
-  double angle = 0;                   ///< Angle between the optical axes if the result were commanded, rad.
-  double angle_sigma = 0;             ///< Standard deviation of this angle, rad.
-  std::array<double, 2> focal = {0, 0};        ///< Focal lengths, px.
+  double angle =
+      0;  ///< Angle that the optical axes would have if the result of the calibration were commanded, rad.
+  double angle_sigma = 0;                ///< Standard deviation of the angle between the optical axes, rad.
+  std::array<double, 2> focal = {0, 0};  ///< Focal lengths, px.
   std::array<double, 2> focal_sigma = {0, 0};  ///< Relative standard deviations of the focal lengths.
   double zoom_ratio_sigma = 0;                 ///< Relative standard deviation of the zoom ratio.
   std::string next;                            ///< Next action in words.

@@ -73,8 +73,9 @@ ReportFigure loop_photograph(const CalibrationRun& run, std::size_t i, bool is_a
 ReportFigure ideal_drawing(const CalibrationRun& run, std::size_t i, std::size_t number) {
   const IdealArc& ideal = run.arcs[i].ideal;
   constexpr int count = 40;
-  ImagePlot plot = photograph(ideal.picture, {},
-                              fmt::format("camera {}, ideal: the arc in {}", run.cameras[i], ideal.plane));
+  ImagePlot plot = photograph(
+      ideal.picture, {},
+      fmt::format("camera {}, ideal picture of the arc in the plane {}", run.cameras[i], ideal.plane));
   plot.outlines = {
       {"ideal axis", "s3", {{backbone_pixels(run.nominal.arm, ideal.state, ideal.view, count), "dash1"}}}};
   return loop_drawing(run, i, "ideal", number, std::move(plot));
@@ -92,8 +93,8 @@ std::string arc_text(const CommandedArc& arc, const std::string& camera) {
     rotations.push_back(to_hundredths(arc.rotations[i]));
   }
   return fmt::format(
-      "The arc in {}, for camera {}: sections bend by {} deg, rotated by {} deg{}.", arc.ideal.plane, camera,
-      fmt::join(bends, ", "), fmt::join(rotations, ", "),
+      "The arc in the plane {}, for camera {}: sections bend by {} deg, in directions rotated by {} deg{}.",
+      arc.ideal.plane, camera, fmt::join(bends, ", "), fmt::join(rotations, ", "),
       arc.positions ? fmt::format("; motors at {} microsteps", fmt::join(*arc.positions, ", ")) : "");
 }
 

@@ -16,9 +16,9 @@ namespace flexura {
 /// Returns the task's item in the list `dynamics` of a summary.
 [[nodiscard]] Node dynamics_node(const DynamicsRun& run);
 
-/// Returns the report's chapter of a task of kind "dynamics". It states whether the Lyapunov function
-/// decreased as in theory, and if not, why. It has charts of this function, the energies and the errors.
-/// `number`: index among the tasks of this kind, from 0, for names of figures.
+/// Returns the report's chapter of a task of kind "dynamics". The chapter states whether the Lyapunov
+/// function decreased as in theory, and if not, why. The chapter has charts of this function, the energies
+/// and the errors. `number`: index among the tasks of this kind, from 0, for names of figures.
 [[nodiscard]] Chapter dynamics_chapter(const DynamicsRun& run, std::size_t number);
 
 }  // namespace flexura

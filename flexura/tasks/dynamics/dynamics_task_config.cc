@@ -37,8 +37,9 @@ const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*) {
   using Target = DynamicsTargetConfig;
   static const auto table =
       with_shape_fields(
-          Table<Target>("target",
-                        "Target shape of the law, by bends or by the two angles of the arm's direction."))
+          Table<Target>(
+              "target",
+              "Target shape of the law, given by bends or by the two angles of the arm's direction."))
           .field("azimuths", &Target::azimuths,
                  {.meaning = "Azimuths theta of the arm's direction from +Y towards +X, at equal fractions "
                              "of the length from base to tip. The first azimuth is that of the base. "
@@ -47,13 +48,14 @@ const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*) {
                   .range = between(-50, 50),
                   .count = {2, most_angles},
                   .default_text = "not set"})
-          .field("elevations", &Target::elevations,
-                 {.meaning = "Elevations q of the arm's direction from the plane XOY towards +Z, at the same "
-                             "points; their magnitude is below a quarter turn.",
-                  .unit = Unit::radian,
-                  .range = angle_range,
-                  .count = {2, most_angles},
-                  .default_text = "not set"});
+          .field(
+              "elevations", &Target::elevations,
+              {.meaning = "Elevations q of the arm's direction from the plane XOY towards +Z, at the same "
+                          "points as `azimuths`. The magnitude of an elevation must be below a quarter turn.",
+               .unit = Unit::radian,
+               .range = angle_range,
+               .count = {2, most_angles},
+               .default_text = "not set"});
   return table;
 }
 
@@ -61,29 +63,29 @@ const Table<PotentialConfig>& fields_of(const PotentialConfig*) {
   using P = PotentialConfig;
   static const auto table =
       Table<P>("law",
-               "Gains of the artificial potential with gravity compensation and damping. Gains that violate "
-               "the theory's conditions are accepted. The run then shows the motion and ends as failed, with "
-               "the reason.")
-          .field("stiffness", &P::stiffness,
-                 {.meaning = "Potential stiffness k of theta and of q, N m per metre of arm and rad. The "
-                             "theory requires values above 0. One number for both angles, or one per angle.",
-                  .range = gain,
-                  .one_for_all = true})
+               "Gains of the artificial potential with gravity compensation and damping. The program also "
+               "accepts gains that violate the conditions of the theory. The task then runs, and ends as "
+               "failed with the reason.")
+          .field(
+              "stiffness", &P::stiffness,
+              {.meaning = "Stiffness k of the potential for theta and q, N m per metre of arm and rad. One "
+                          "number for both angles, or one per angle. The theory requires values above 0.",
+               .range = gain,
+               .one_for_all = true})
           .field("damping", &P::damping,
                  {.meaning = "Damping matrix K of the rates of (theta, q), N m s per metre of arm. The "
                              "theory requires a positive definite matrix.",
                   .range = gain})
           .field("length_stiffness", &P::length_stiffness,
-                 {.meaning = "Potential stiffness k of each variable section length, N/m. The theory "
+                 {.meaning = "Stiffness k of the potential for each variable section length, N/m. The theory "
                              "requires a value above 0.",
                   .range = gain})
-          .field(
-              "length_damping", &P::length_damping,
-              {.meaning =
-                   "Damping K of each variable section length, N s/m. The theory requires a value above 0.",
-               .range = gain})
+          .field("length_damping", &P::length_damping,
+                 {.meaning = "Damping coefficient K of each variable section length, N s/m. The theory "
+                             "requires a value above 0.",
+                  .range = gain})
           .field("gravity_compensation", &P::gravity_compensation,
-                 {.meaning = "Compensated fraction of gravity. The theory requires 1.",
+                 {.meaning = "Fraction of gravity that the law compensates. The theory requires 1.",
                   .range = between(-10, 10)})
           .field(
               "elasticity", &P::elasticity,
@@ -93,8 +95,8 @@ const Table<PotentialConfig>& fields_of(const PotentialConfig*) {
           .field("drives", &P::drives,
                  {.meaning = "Actuators that apply the law's force: everywhere along the arm, a uniform "
                              "torque along each section, or a moment from each section's base to its end. "
-                             "Torques and moments apply the force nearest to the law's force; with the basis "
-                             "\"sections\" it is exact."})
+                             "With torques or moments, the actuators apply the force nearest to the law's "
+                             "force. With the basis \"sections\" this force is exact."})
           .field("sign", &P::sign,
                  {.meaning = "Sign of the potential's force: 1, or -1 to drive the arm away from the target.",
                   .range = between(-1, 1)});
@@ -108,15 +110,15 @@ const Table<MeasurementConfig>& fields_of(const MeasurementConfig*) {
                "Measurement of the arm's angles. The potential and both compensations use the latest "
                "measurement; damping uses the true rates.")
           .field("reading", &M::reading,
-                 {.meaning =
-                      "Measured quantity: theta and q at each node, or each point of the arm in two "
-                      "image planes. With `planes`, the potential's force uses the angle errors in the two "
-                      "planes. Where these are undefined, points are triangulated from both pictures."})
+                 {.meaning = "Measured quantity. `angles`: theta and q at each node. `planes`: each point of "
+                             "the arm in two image planes. With `planes`, the potential's force uses the "
+                             "angle errors in the two planes. Where these angles are undefined, points are "
+                             "triangulated from both pictures."})
           .field("delay", &M::delay,
                  {.meaning = "Delay of a measurement.", .unit = Unit::second, .range = between(0, 60)})
           .field("noise", &M::noise,
                  {.meaning = "Standard deviation of each measured angle, independent for each measurement. "
-                             "The angles of planar arms get no noise out of the plane.",
+                             "For planar arms, the elevation has no noise.",
                   .unit = Unit::radian,
                   .range = between(0, 10)})
           .field("step", &M::step,
@@ -140,8 +142,8 @@ const Table<DynamicsTask>& fields_of(const DynamicsTask*) {
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_motion)})
           .field("target", &T::target,
-                 {.meaning = "Target shape, as `target.bends_deg = [...]` or `target.azimuths_deg = [...]` "
-                             "and `target.elevations_deg = [...]`.",
+                 {.meaning = "Target shape: either `target.bends_deg = [...]`, or both `target.azimuths_deg "
+                             "= [...]` and `target.elevations_deg = [...]`.",
                   .required = true})
           .field("density", &T::density,
                  {.meaning = "Mass per length of the arm at rest, kg/m.", .range = between(1e-6, 1e6)})
@@ -153,26 +155,26 @@ const Table<DynamicsTask>& fields_of(const DynamicsTask*) {
                  {.meaning = "Bending stiffness EI, N m^2.", .range = amount})
           .field("axial_stiffness", &T::axial_stiffness,
                  {.meaning = "Axial stiffness EA of variable lengths, N.", .range = amount})
-          .field(
-              "damping", &T::damping,
-              {.meaning =
-                   "Damping by the medium: power loss per metre of arm at a rotation rate of 1 rad/s, W/m.",
-               .range = amount})
+          .field("damping", &T::damping,
+                 {.meaning = "Damping by the surrounding medium: power loss per metre of arm at a rotation "
+                             "rate of 1 rad/s, W/m.",
+                  .range = amount})
           .field("length_damping", &T::length_damping,
                  {.meaning = "Damping of the rates of variable lengths, N s/m.", .range = amount})
           .field("variable_lengths", &T::variable_lengths,
                  {.meaning = "Whether the law changes the lengths of the sections."})
           .field("basis", &T::basis,
-                 {.meaning = "Form of each angle along the arm: linear in every section (an arc if the arm "
-                             "bends in one plane), or one polynomial."})
+                 {.meaning = "Function of arc length that represents each angle. `sections`: linear in every "
+                             "section, which is an arc if the arm bends in one plane. `polynomial`: one "
+                             "polynomial for the whole arm."})
           .field("nodes", &T::nodes,
                  {.meaning = "Number of nodes of each angle's polynomial.", .range = between(1, 16)})
           .field("law", &T::law, {.meaning = "Gains of the law."})
           .field("measurement", &T::measurement,
                  {.meaning = "Measurement of the arm's angles.", .default_text = "exact"})
           .field("tolerance", &T::tolerance,
-                 {.meaning = "Largest final value of the Lyapunov function W that counts as success, as a "
-                             "fraction of its initial value.",
+                 {.meaning = "The task succeeds if the final value of the Lyapunov function W is at most "
+                             "this fraction of the initial value.",
                   .range = above_up_to(0, 1)});
   return table;
 }

@@ -47,8 +47,8 @@ struct MeasurementConfig {
   std::optional<double> step;  ///< Interval between measurements, s; default: the clock's step.
 };
 
-/// `kind = "dynamics"`: the arm is a continuum with mass, weight and elasticity (DistributedArm). It starts
-/// at rest in its current shape and moves under the forces of `law` (docs/control.md).
+/// `kind = "dynamics"`: the arm is a continuum with mass, weight and elasticity (DistributedArm). The arm
+/// starts at rest in its current shape and moves under the forces of `law` (docs/control.md).
 struct DynamicsTask {
   std::string name;
   double duration = 5;  ///< Duration, s.

@@ -32,9 +32,9 @@ const Table<MoveTarget>& fields_of(const MoveTarget*) {
           Table<MoveTarget>(
               "target",
               "Target shape of the arm, or target position of its tip. For a tip position, the program "
-              "searches a shape within the arm's limits, starting at the current shape."))
+              "searches for a shape within the arm's limits, starting at the current shape."))
           .field("position", &MoveTarget::position,
-                 {.meaning = "Position of the tip in the world, instead of a shape.",
+                 {.meaning = "Target position of the tip in the world, instead of a target shape.",
                   .unit = Unit::metre,
                   .range = between(-1e6, 1e6),
                   .default_text = "not set"});
@@ -44,12 +44,12 @@ const Table<MoveTarget>& fields_of(const MoveTarget*) {
 const Table<MoveTask>& fields_of(const MoveTask*) {
   static const auto table =
       Table<MoveTask>("move",
-                      "Moves the arm to another shape. The bend and stretch of each section change along a "
-                      "straight line. If the shape is given by cord angles and each section has its own law, "
-                      "the laws apply to the cord angles.")
+                      "Moves the arm to another shape. The bends and stretches change linearly from the "
+                      "current to the target shape. If the target is given by cord angles and each section "
+                      "has its own law, the cord angles change by these laws instead.")
           .field("name", &MoveTask::name, name_spec)
           .field("duration", &MoveTask::duration,
-                 {.meaning = "Duration of the motion; computed for a trapezoid.",
+                 {.meaning = "Duration of the motion. With the law `trapezoid` it is computed.",
                   .unit = Unit::second,
                   .range = between(min_duration, max_duration),
                   .default_text = "1"})
@@ -58,7 +58,7 @@ const Table<MoveTask>& fields_of(const MoveTask*) {
                              "`max_acceleration`. One law for all sections, or one per section.",
                   .one_for_all = true})
           .field("max_rate", &MoveTask::max_rate,
-                 {.meaning = "Law `trapezoid`: largest bend rate of a section; a stretch rate of 1/s counts "
+                 {.meaning = "Law `trapezoid`: largest bend rate of a section. A stretch rate of 1/s counts "
                              "as 1 rad/s. One rate for all sections, or one per section. All sections arrive "
                              "at the same time.",
                   .unit = Unit::radian_per_second,
@@ -89,7 +89,7 @@ const Table<HoldTask>& fields_of(const HoldTask*) {
 const Table<SineTask>& fields_of(const SineTask*) {
   static const auto table =
       Table<SineTask>("sine",
-                      "Oscillates every section about its current shape: start + amplitude (sin(2 pi "
+                      "Makes every section oscillate about its current shape: start + amplitude (sin(2 pi "
                       "t/period + phase) - sin phase).")
           .field("name", &SineTask::name, name_spec)
           .field("duration", &SineTask::duration, duration_spec)
@@ -114,18 +114,19 @@ const Table<KeyframesTask>& fields_of(const KeyframesTask*) {
           "keyframes",
           "Moves the arm through shapes at given times. The column `time` is in s from the task's start; the "
           "first row is at 0. Section 1 has the column `arching_1`, `cord_angle_1` or the pair `bend_x_1`, "
-          "`bend_y_1`, in rad; names may end in `_deg` or `_pi` for other units. Sections that stretch also "
-          "have `stretch_1`. The first row must be the current shape.")
+          "`bend_y_1`, in rad; column names may end in `_deg` or `_pi` for other units. Sections that "
+          "stretch also have `stretch_1`. The first row must be the current shape.")
           .field("name", &KeyframesTask::name, name_spec)
           .field("file", &KeyframesTask::file,
-                 {.meaning = "CSV file in this file's folder or below. Its first line names the columns.",
+                 {.meaning = "CSV file in this file's folder or below. The first line of the CSV file names "
+                             "the columns.",
                   .default_text = "not set"})
           .field("columns", &KeyframesTask::columns,
-                 {.meaning = "Names of the columns; only without `file`.",
+                 {.meaning = "Names of the columns of `rows`. Not allowed with `file`.",
                   .count = {0, 10000},
                   .default_text = "not set"})
           .field("rows", &KeyframesTask::rows,
-                 {.meaning = "Rows of values; only without `file`.",
+                 {.meaning = "Rows of values. Not allowed with `file`.",
                   .count = {0, max_rows},
                   .default_text = "not set"})
           .field("interpolation", &KeyframesTask::interpolation,
@@ -137,19 +138,22 @@ const Table<ExpressionTask>& fields_of(const ExpressionTask*) {
   static const auto table =
       Table<ExpressionTask>(
           "expression",
-          "Moves the arm by formulas such as `\"0.3*sin(2*pi*t/T)\"`: one for all sections, or one per "
-          "section. The variables are `t` (time from the task's start, s), `T` (duration of the task, s) and "
-          "`i` (number of the section, from 1). Angles are in rad.")
+          "Moves the arm by formulas such as `\"0.3*sin(2*pi*t/T)\"`: one formula for all sections, or one "
+          "per section. The variables are `t` (time from the task's start, s), `T` (duration of the task, s) "
+          "and `i` (number of the section, from 1). Angles are in rad.")
           .field("name", &ExpressionTask::name, name_spec)
           .field("duration", &ExpressionTask::duration, duration_spec)
           .field("cord_angles", &ExpressionTask::cord_angles,
-                 {.meaning = "Planar arms: chord angles from +X.",
+                 {.meaning = "Planar arms: angle of each section's chord from +X.",
                   .one_for_all = true,
                   .default_text = "not set"})
           .field("archings", &ExpressionTask::archings,
-                 {.meaning = "Planar arms: archings.", .one_for_all = true, .default_text = "not set"})
+                 {.meaning = "Planar arms: arching of each section.",
+                  .one_for_all = true,
+                  .default_text = "not set"})
           .field("bends", &ExpressionTask::bends,
-                 {.meaning = "Bend vectors; one entry applies to all sections.", .default_text = "not set"})
+                 {.meaning = "Bend vector of each section. A single entry applies to all sections.",
+                  .default_text = "not set"})
           .field("stretches", &ExpressionTask::stretches,
                  {.meaning = "Factors on the lengths of the sections.",
                   .one_for_all = true,

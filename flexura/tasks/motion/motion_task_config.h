@@ -56,7 +56,8 @@ struct SineTask {
 /// experiment.
 struct KeyframesTask {
   std::string name;
-  std::string file;  ///< CSV file in the experiment's folder. Its content is read into `columns` and `rows`.
+  std::string file;  ///< CSV file in the experiment's folder. The content of the file is read into `columns`
+                     ///< and `rows`.
   std::vector<std::string> columns;       ///< Names of the columns: "time", and for each section "arching_1",
                                           ///< "cord_angle_1_deg", "bend_x_1", ...
   std::vector<std::vector<double>> rows;  ///< Values in the order of the columns.

@@ -20,9 +20,9 @@ struct ServoRun {
   std::array<std::string, 2> cameras;  ///< Names of the cameras.
   RigModel nominal;
   double settle = 0;  ///< The task's ServoSettings::settle, s.
-  /// Result of the session. Its steps include the true errors in the simulation, which the session does not
-  /// know. If pictures give the target, the true shape is compared with the shape estimated from the
-  /// pictures.
+  /// Result of the session. The steps in the result include the true errors in the simulation, which the
+  /// session does not know. If pictures give the target, the true shape is compared with the shape estimated
+  /// from the pictures.
   ServoResult result;
   std::optional<ServoError>
       true_remaining;  ///< Mean true error over the last `settle` s; missing if the truth is unknown.

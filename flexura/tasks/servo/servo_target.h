@@ -12,9 +12,9 @@ namespace flexura {
 /// Shape of an arm for a requested target, and the distance between both.
 struct ServoTargetShape {
   ArmState state;  ///< Command for this shape.
-  /// Distance from the requested target, share of the arm's length. For a target position, it is the distance
-  /// of the tip. For a curve or angles, it is the root mean square distance along the arm. It is 0 for an
-  /// exact shape.
+  /// Distance from the requested target, share of the arm's length. For a target position, this is the
+  /// distance of the tip. For a curve or angles, this is the root mean square distance along the arm. The
+  /// distance is 0 for an exact shape.
   double missed = 0;
 };
 /// Returns the shape of `arm` for a target that is not given by pictures. The search starts at the command
@@ -31,8 +31,8 @@ struct ServoTargetShape {
                                                                                const ArmModel& arm,
                                                                                ArmState from);
 
-/// Returns the pictures of a target that is given by pictures. Their files are in `folder` or below. Throws
-/// InputError if a picture is invalid or its size differs from that of its camera's pictures.
+/// Returns the pictures of a target that is given by pictures. The picture files are in `folder` or below.
+/// Throws InputError if a picture is invalid or its size differs from that of its camera's pictures.
 [[nodiscard]] RecordedViews recorded_views(const ServoTargetConfig& target,
                                            const std::array<CameraConfig, 2>& cameras,
                                            const std::filesystem::path& folder);

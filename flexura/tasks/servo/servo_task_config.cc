@@ -55,9 +55,10 @@ const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
   using Target = ServoTargetConfig;
   static const auto table =
       with_shape_fields(
-          Table<Target>("target",
-                        "Target shape of the arm. Exactly one of these gives it: bends, the tip's position, "
-                        "a backbone curve in space, direction angles, or two pictures of the arm.")
+          Table<Target>(
+              "target",
+              "Target shape of the arm. The target is given by exactly one of these: bends, the tip's "
+              "position, a backbone curve in space, direction angles, or two pictures of the arm.")
               .field("time", &Target::time,
                      {.meaning = "Time of the target from the task's start. Between targets "
                                  "the reference is interpolated linearly.",
@@ -90,12 +91,12 @@ const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
                   .range = angle_range,
                   .count = {2, most_points},
                   .default_text = "not set"})
-          .field(
-              "pictures", &Target::pictures,
-              {.meaning = "Two picture files in this file's folder or below, in the order of the task's "
-                          "cameras. They were taken with the cameras at their positions at the task's start.",
-               .count = {2, 2},
-               .default_text = "not set"});
+          .field("pictures", &Target::pictures,
+                 {.meaning = "Two picture files in this file's folder or below, in the order of the task's "
+                             "cameras. When the pictures were taken, the cameras had the same axis positions "
+                             "as at the task's start.",
+                  .count = {2, 2},
+                  .default_text = "not set"});
   return table;
 }
 
@@ -106,27 +107,29 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                "Controls the shape of the arm by feedback from two cameras until it reaches the target. The "
                "duration depends on the convergence.")
           .field("name", &T::name, {.meaning = "Name of the task in results.", .default_text = "its kind"})
-          .field("law", of_task(&T::law),
-                 {.meaning = "Control law: the error that it reduces, and how. `shape`: difference between "
-                             "the shape estimated from both images and the target shape. `points`, `chords`, "
-                             "`moments`: errors of image features. `silhouettes`: errors of the arm's image "
-                             "edges. `potential`: the paper's artificial potential on the errors in "
-                             "two image planes (XOY of the first camera, ZOY of the second). "
-                             "`predictive`: the shape error, with commands planned ahead so that a dynamic "
-                             "arm stops swinging. `computed_torque` and `shape_potential`: the shape error, "
-                             "with forces in the modes of the arm's oscillation."})
-          .field("measure", of_task(&T::measure),
-                 {.meaning = "Source of the angles for the laws chords and potential: each picture alone, or "
-                             "optical flow since the previous picture. Angles by flow are corrected towards "
-                             "those of each picture."})
           .field(
-              "anchor", of_task(&T::anchor),
-              {.meaning = "Time constant of the correction of flow angles: errors decay as exp(-t/anchor).",
-               .unit = Unit::second,
-               .range = above_up_to(0, longest_time)})
+              "law", of_task(&T::law),
+              {.meaning =
+                   "Control law, which determines the error that the servo reduces, and how. `shape`: "
+                   "difference between the shape estimated from both images and the target shape. `points`, "
+                   "`chords`, `moments`: errors of image features. `silhouettes`: errors of the arm's image "
+                   "edges. `potential`: the paper's artificial potential on the errors in two image planes "
+                   "(XOY of the first camera, ZOY of the second). `predictive`: the shape error, with "
+                   "commands planned ahead so that a dynamic arm stops oscillating. `computed_torque` and "
+                   "`shape_potential`: the shape error, with forces in the modes of the arm's oscillation."})
+          .field("measure", of_task(&T::measure),
+                 {.meaning = "Source of the angles for the laws chords and potential. `picture`: each "
+                             "picture alone. `flow`: optical flow since the previous picture; these angles "
+                             "are corrected slowly towards the angles from each picture."})
+          .field("anchor", of_task(&T::anchor),
+                 {.meaning = "Time constant of the correction of angles from optical flow: their errors "
+                             "decay as exp(-t/anchor).",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest_time)})
           .field("jacobian", of_task(&T::jacobian),
-                 {.meaning = "Jacobian of the arm with respect to its drives: from the model, or learned "
-                             "online by Broyden's update or by recursive least squares."})
+                 {.meaning = "Jacobian of the arm with respect to its drives. `model`: computed from the "
+                             "model. `broyden`, `recursive`: estimated during the run by Broyden's update or "
+                             "by recursive least squares."})
           .field("cameras", &T::cameras,
                  {.meaning = "Names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
           .field("target", &T::target,
@@ -148,10 +151,11 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
           .field("predict", of_task(&T::predict),
                  {.meaning = "Whether the servo predicts the effect of commands that were sent after the "
                              "picture was taken."})
-          .field("tolerance", of_task(&T::tolerance),
-                 {.meaning = "Largest shape error at which the target counts as reached: root mean square "
-                             "along the arm, as a fraction of its length.",
-                  .range = above_up_to(0, 1)})
+          .field(
+              "tolerance", of_task(&T::tolerance),
+              {.meaning = "Largest shape error at which the target counts as reached. The shape error is the "
+                          "root mean square distance along the arm, as a fraction of the arm's length.",
+               .range = above_up_to(0, 1)})
           .field("settle", of_task(&T::settle),
                  {.meaning = "Time for which the error must stay within `tolerance`.",
                   .unit = Unit::second,
@@ -170,10 +174,10 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                   .range = above_up_to(0, longest_time)})
           .field(
               "disturbance", of_task(&T::disturbance),
-              {.meaning = "If the arm's shape changes by more than this without a cause in the drives, the "
-                          "servo holds the arm. The change is the root mean square along the arm, as a "
-                          "fraction of its length. The task fails "
-                          "if the change lasts for `give_up_after`.",
+              {.meaning =
+                   "If the arm's shape changes by more than this value without a motion of the drives, the "
+                   "servo holds the arm. The change is the root mean square distance along the arm, as a "
+                   "fraction of the arm's length. The task fails if the change lasts for `give_up_after`.",
                .range = above_up_to(0, 1),
                .default_text =
                    "0.05 with the arm's model \"dynamic\" and jacobian \"model\", otherwise no such check"})

@@ -251,16 +251,16 @@ int export_command(const ExportArguments& arguments, std::ostream& out, std::ost
     throw input_error("--out", fmt::format("--to {} writes a folder: expected --to gltf", format));
   TerminalProgress progress(err);
   std::filesystem::path written;
-  bool truncated = false;
+  std::vector<std::string> notes;
   if (is_gltf) {
     const GltfExport result = export_gltf(arguments.results, arguments.out, &progress);
-    written = result.file, truncated = result.truncated;
+    written = result.file, notes = result.notes;
   } else {
     const ExportResult result = export_as(format, arguments.results, progress);
-    written = result.folder, truncated = result.truncated;
+    written = result.folder, notes = result.notes;
   }
   progress.clear();
-  if (truncated) err << "note: the run was interrupted; exported up to the last complete chunk of its log\n";
+  for (const std::string& note : notes) err << "note: " << note << '\n';
   const char* const films_or_tables = format == "csv" ? "tables" : "films";
   print_line(out, is_gltf ? "glTF" : films_or_tables, written.string());
   return exit_done;

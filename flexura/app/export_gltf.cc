@@ -300,7 +300,7 @@ GltfExport export_gltf(const std::filesystem::path& results, const std::filesyst
                        Progress* progress) {
   const Recording recording(results);
   const std::string bytes = motion_file(recording, progress);
-  GltfExport written{file, recording.is_truncated()};
+  GltfExport written{file, recording.notes()};
   if (file.empty()) written.file = make_new_folder(results / "gltf") / "arm.glb";
   write_new_file(written.file, bytes);
   return written;

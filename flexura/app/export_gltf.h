@@ -15,8 +15,8 @@ extern const std::array<double, 3> report_obstacle_color;
 
 /// Result of an export as glTF.
 struct GltfExport {
-  std::filesystem::path file;  ///< The new file.
-  bool truncated = false;      ///< Whether the run was interrupted: its log ends without a summary.
+  std::filesystem::path file;      ///< The new file.
+  std::vector<std::string> notes;  ///< What is missing in the log (log_notes).
 };
 
 /// Writes the motion of a run's arm as a binary glTF 2.0 file. The arm is an animated tube with a skin on

@@ -33,8 +33,8 @@ using Kind = RodParameter::Kind;
 // Limits of the default window. It covers one oscillation, but fits several times into the record and holds
 // enough samples.
 constexpr double least_windows = 4, least_samples_in_window = 12;
-// Misfit above which a note is printed: the residual is five times what noise explains.
-constexpr double large_misfit = 25;
+// Misfit above which a note is printed: the residual is twice what noise explains.
+constexpr double large_misfit = 4;
 
 // Returns a uniform number in (0, 1) from random bits.
 double uniform_of(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53; }
@@ -327,7 +327,7 @@ int identify_command(const IdentifyArguments& arguments, std::ostream& out, std:
   if (arguments.friction && rod.tendons.empty())
     throw input_error("--friction", "the arm has no tendons: expected an arm with tendons");
   MeasuredMotion motion = read_motion(arguments.motion, experiment, rod, {arguments.from, arguments.to});
-  if (motion.is_cut) err << "note: the run was interrupted; its log is read up to the last complete chunk\n";
+  for (const std::string& note : motion.notes) err << "note: " << note << '\n';
   const double noise = arguments.noise_mm.value_or(0) * 1e-3;
   if (motion.is_logged && noise > 0) add_errors(motion, noise, experiment.seed);
   IdentifiedArm found;

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "flexura/base/source.h"
 #include "flexura/base/table.h"
@@ -60,13 +61,14 @@ Logged read_messages(const McapReader& log, const std::string& name, const TimeS
 }
 
 MeasuredMotion motion_of(const Logged& logged, const std::string& name, const Experiment& experiment,
-                         const Rod& rod, bool is_cut) {
+                         const Rod& rod, std::vector<std::string> notes) {
   if (logged.truth.empty())
     throw input_error(name,
                       "has no true arm states (/arm/truth): expected the log of a run of an arm with "
                       "model = \"dynamic\"");
   const Pose X_BW = experiment.arm.arm().X_WB.inverse();
-  MeasuredMotion motion{.places = tube_places(rod), .samples = {}, .is_logged = true, .is_cut = is_cut};
+  MeasuredMotion motion{
+      .places = tube_places(rod), .samples = {}, .is_logged = true, .notes = std::move(notes)};
   const std::size_t poses = 2 * motion.places.size() - 1;
   for (std::size_t k = 0; k < logged.truth.size(); ++k) {
     const auto& [time, truth] = logged.truth[k];
@@ -78,7 +80,7 @@ MeasuredMotion motion_of(const Logged& logged, const std::string& name, const Ex
                       rod.sections.size()));
     const auto pulls = logged.tensions.find(logged.times[k]);
     // A log that was cut short may lack the tensions of its last state.
-    if (pulls == logged.tensions.end() && is_cut && k + 1 == logged.truth.size()) break;
+    if (pulls == logged.tensions.end() && !motion.notes.empty() && k + 1 == logged.truth.size()) break;
     if (pulls == logged.tensions.end() && !rod.tendons.empty())
       throw input_error(name, fmt::format("has no tensions (/arm/tensions) at {} s", time));
     RodPlaceSample sample{.time = time, .positions = {}};
@@ -176,11 +178,15 @@ MeasuredMotion read_motion(const std::filesystem::path& file, const Experiment& 
     throw input_error(
         file.string(),
         "no such file: expected a folder made by `flexura run`, a log (.mcap), or measured points (.csv)");
-  const McapReader log = is_folder ? open_log(file) : from_log([&] { return McapReader(file); });
+  const McapReader log = is_folder ? open_log(file) : open_log_file(file);
   const std::string name = is_folder ? (file / log_file_name).string() : file.string();
+  for (const McapDamage& damage : log.damage())
+    if ((!span.to || *span.to >= 1e-9 * static_cast<double>(damage.from)) &&
+        (!span.from || *span.from <= 1e-9 * static_cast<double>(damage.to)))
+      throw input_error(name, log_notes(log).front() + ": choose a part without them by --from and --to");
   return from_log([&] {
     const Logged logged = read_messages(log, name, span);
-    return motion_of(logged, name, experiment, rod, log.truncated());
+    return motion_of(logged, name, experiment, rod, log_notes(log));
   });
 }
 

@@ -23,8 +23,8 @@ struct TimeSpan {
 struct MeasuredMotion {
   std::vector<RodPlace> places;
   std::vector<RodPlaceSample> samples;
-  bool is_logged = false;  ///< Whether the positions are from a run's log, and therefore exact.
-  bool is_cut = false;     ///< Whether the log is incomplete because its run was interrupted.
+  bool is_logged = false;               ///< Whether the positions are from a run's log, and therefore exact.
+  std::vector<std::string> notes = {};  ///< What is missing in the log (log_notes).
 };
 
 /// Reads the motion of the arm of `experiment`, whose rod is `rod`, from `file`. `file` is a results folder,

@@ -124,6 +124,9 @@ LineariseAnswers::LineariseAnswers(const ArmConfig& arm, const std::optional<Dri
   for (std::size_t i = 0; i < rod_.tendons.size(); ++i)
     if (rod_.tendons[i].friction > 0)
       throw std::invalid_argument(fmt::format("tendon {}: friction has no linear model", i + 1));
+  if (arm.drag) throw std::invalid_argument("arm.drag: expected none, because it is not linearised");
+  if (!arm.payload.empty())
+    throw std::invalid_argument("arm.payload: expected none, because payloads are not linearised");
 }
 
 std::string LineariseAnswers::answer(std::string_view line) {

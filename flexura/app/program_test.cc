@@ -28,6 +28,7 @@ namespace {
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::MatchesRegex;
 using ::testing::StartsWith;
 
 TEST_F(Program, RunsTheExperimentAndSaysWhereTheResultsAre) {
@@ -276,6 +277,29 @@ TEST_F(Program, LeavesALogThatReadsWhenKilled) {
   EXPECT_THAT(ended.err, HasSubstr("the run was interrupted"));
   const std::string states = read_text_file(path("results/long/csv/states.csv"), std::size_t{1} << 30);
   EXPECT_GT(std::ranges::count(states, '\n'), 1000);
+}
+
+TEST_F(Program, ExportsWhatADamagedLogHas) {
+  std::ofstream(path("short.toml"))
+      << "record.report = false\nclock.step = 1e-3\n[[arm.section]]\nlength = 1\n[[task]]\nkind = 'move'\n"
+         "duration = 20\nto.archings = [1]\n";
+  ASSERT_EQ(run("run short.toml").status, 0);
+  const auto log = path("results/short/log.mcap");
+  std::string bytes = read_text_file(log, std::size_t{1} << 30);
+  bytes[bytes.size() / 2] ^= 1;
+  std::ofstream(log, std::ios::binary) << bytes;
+  const Ended ended = run("export results/short --to csv");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.err, MatchesRegex("note: the log is damaged: its messages from [0-9.]+ to [0-9.]+ s are "
+                                      "missing .*\n"));
+  const std::string states = read_text_file(path("results/short/csv/states.csv"), std::size_t{1} << 30);
+  const auto rows = std::ranges::count(states, '\n');
+  EXPECT_GT(rows, 1000);
+  EXPECT_LT(rows, 20000);
+  std::ofstream(log).close();
+  const Ended empty = run("export results/short --to csv");
+  EXPECT_EQ(empty.status, 2);
+  EXPECT_THAT(empty.err, HasSubstr("log.mcap: has no messages: its run was interrupted at the start"));
 }
 
 TEST_F(Program, ReferencePageIsTheOneItPrints) {

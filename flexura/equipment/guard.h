@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/equipment/descriptor.h"
+#include "flexura/base/descriptor.h"
 #include "flexura/equipment/link.h"
 
 namespace flexura {

@@ -27,7 +27,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "flexura/equipment/descriptor.h"
+#include "flexura/base/descriptor.h"
 
 namespace flexura {
 namespace {

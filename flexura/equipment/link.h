@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "flexura/equipment/descriptor.h"
+#include "flexura/base/descriptor.h"
 #include "flexura/port/outcome.h"
 
 namespace flexura {

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "flexura/equipment/descriptor.h"
+#include "flexura/base/descriptor.h"
 #include "flexura/equipment/onvif_device.h"
 
 namespace flexura {

@@ -269,7 +269,7 @@ ExportResult export_csv(const std::filesystem::path& results, LogTables more, Pr
   tables.push_back(std::make_unique<EventsTable>());
   std::ranges::move(more, std::back_inserter(tables));
   from_log([&] { fill(tables, log, (results / log_file_name).string(), progress); });
-  ExportResult result{make_new_folder(results / "csv"), log.truncated()};
+  ExportResult result{make_new_folder(results / "csv"), log_notes(log)};
   for (const auto& table : tables)
     if (const std::string text = table->text(); !text.empty())
       write_new_file(result.folder / table->file_name(), text);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "flexura/base/progress.h"
 #include "flexura/log/log_table.h"
@@ -10,8 +11,8 @@ namespace flexura {
 
 /// Result of an export of a run's log.
 struct ExportResult {
-  std::filesystem::path folder;  ///< New folder with the tables.
-  bool truncated = false;        ///< Whether the run was interrupted, so that its log ends without a summary.
+  std::filesystem::path folder;    ///< New folder with the tables.
+  std::vector<std::string> notes;  ///< What is missing in the log (log_notes).
 };
 
 /// Writes a run's log as tables into the new folder RESULTS/csv (csv-2, ... if it exists):

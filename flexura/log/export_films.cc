@@ -105,7 +105,7 @@ ExportResult export_films(const std::filesystem::path& results, const std::strin
                           Progress* progress) {
   const McapReader log = open_log(results);
   const auto sensors = from_log([&] { return sensors_of(log, cameras, results); });
-  ExportResult result{make_new_folder(results / folder), log.truncated()};
+  ExportResult result{make_new_folder(results / folder), log_notes(log)};
   std::map<std::string, Film> films;
   for (const auto& [camera, sensor] : sensors)
     films.try_emplace(camera, new_film(result.folder / camera, sensor), sensor);

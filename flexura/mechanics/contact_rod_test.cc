@@ -79,7 +79,7 @@ TEST(ContactRod, ARodThatFallsOnAFloorComesToRest) {
 TEST(ContactRod, TheMomentumChangesByWeightFloorAndClamp) {
   Rod rod = soft_arm();
   rod.sections[0].modes = {.shear = 8, .stretch = 4, .bend = 9, .twist = 1};
-  TouchingRod moving(rod, {.law = {.stiffness = 1e5}, .obstacles = {floor_at(-0.05)}}, 0.01);
+  TouchingRod moving(rod, {.law = {.stiffness = 1e5, .friction = 0.3}, .obstacles = {floor_at(-0.05)}}, 0.01);
   RodState state = moving.dynamics.rest();
   const double mass = rod.sections[0].mass_per_length_at(0) * 0.3;
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero(), touched = impulse;
@@ -96,7 +96,9 @@ TEST(ContactRod, TheMomentumChangesByWeightFloorAndClamp) {
   });
   EXPECT_GT(touched.x(), 0.004);  // N s
   const Eigen::Vector3d momentum = moving.dynamics.momentum(state).head<3>();
-  EXPECT_NEAR(momentum.x(), impulse.x(), 0.03 * touched.x());
+  // The impulse is that of forces at the steps' ends, which change within steps when the rod hits the floor.
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(momentum[axis], impulse[axis], 0.03 * touched.x()) << axis;
+  EXPECT_GT(touched.tail<2>().norm(), 0.1 * touched.x()) << "friction";
   moving.go(state, {}, weight, 1e-3, 1.2);
   const Eigen::Vector3d floor = sum_of(moving.touching(state)),
                         clamp = clamp_force(rod, moving.dynamics.chain(), state.q,

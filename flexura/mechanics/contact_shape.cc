@@ -82,6 +82,12 @@ ContactShape::ContactShape(const ObstacleConfig& obstacle, const Pose& X_BW) {
     throw std::invalid_argument("obstacles: ignore_base must be at least 0 and finite");
 }
 
+double ContactShape::half_thickness() const {
+  if (const auto* capsule = std::get_if<Capsule>(&shape_)) return capsule->radius;
+  if (const auto* box = std::get_if<Box>(&shape_)) return box->half.minCoeff();
+  return std::numeric_limits<double>::infinity();
+}
+
 double ContactShape::distance(const Eigen::Vector3d& p_B) const {
   if (const auto* plane = std::get_if<Plane>(&shape_)) return plane->normal.dot(p_B - plane->point);
   if (const auto* capsule = std::get_if<Capsule>(&shape_)) {

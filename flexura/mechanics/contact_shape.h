@@ -30,6 +30,9 @@ class ContactShape {
   [[nodiscard]] NearestPoint nearest(const Eigen::Vector3d& p_B) const;
   /// Returns only the signed distance, m.
   [[nodiscard]] double distance(const Eigen::Vector3d& p_B) const;
+  /// Returns the smallest distance from the surface to the middle of the body: the radius of a ball or a
+  /// capsule, half the smallest size of a box; infinite for a plane, m.
+  [[nodiscard]] double half_thickness() const;
   /// Returns the length of the part of the rod next to its base that cannot touch the obstacle, m.
   [[nodiscard]] double ignore_base() const { return ignore_base_; }
 

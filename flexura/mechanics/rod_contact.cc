@@ -174,6 +174,27 @@ void RodContact::for_obstacles(std::span<const std::size_t> chosen, std::span<co
   }
 }
 
+bool RodContact::may_have_passed(std::span<const NodeMotion> before,
+                                 std::span<const NodeMotion> after) const {
+  if (before.size() != points_.size() || after.size() != points_.size())
+    throw std::invalid_argument("contacts: a wrong number of points");
+  constexpr double most_parts = 1000;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Eigen::Vector3d &from = before[i].pose.position, way = after[i].pose.position - from;
+    const double moved = way.norm();
+    for (const ContactShape& shape : shapes_) {
+      if (points_[i].s <= shape.ignore_base() && shape.ignore_base() > 0) continue;
+      const double radius = points_[i].radius, reach = 0.5 * (radius + shape.half_thickness());
+      if (!(moved > reach) || !(shape.distance(from) < moved + radius)) continue;
+      // Contact extends over four times the reach.
+      const double parts = std::min(std::ceil(moved / reach), most_parts);
+      for (double k = 1; k < parts; ++k)
+        if (shape.distance(from + k / parts * way) < radius) return true;
+    }
+  }
+  return false;
+}
+
 void RodContact::pull_points(std::span<const std::size_t> chosen, std::span<const NodeMotion> points,
                              std::span<NodePull> pulls) const {
   for (NodePull& pull : pulls) pull.clear();

@@ -81,6 +81,12 @@ class RodContact final : public RodSurroundings {
   void find(std::span<const NodeMotion> points, std::vector<ContactForce>& found) const;
   [[nodiscard]] std::vector<ContactForce> find(std::span<const NodeMotion> points) const;
 
+  /// Returns whether a point may have passed through an obstacle on its straight way from one motion to
+  /// another: it has touched the obstacle, and has moved by more than half of the sum of the tube's radius
+  /// and ContactShape::half_thickness(). Throws std::invalid_argument for a wrong number of points.
+  [[nodiscard]] bool may_have_passed(std::span<const NodeMotion> before,
+                                     std::span<const NodeMotion> after) const;
+
   [[nodiscard]] const ContactLaw& law() const { return law_; }
 
  private:

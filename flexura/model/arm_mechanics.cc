@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "flexura/base/table.h"
@@ -82,6 +84,14 @@ void check_motion(const ArmConfig& arm, Reader& reader) {
     reader.problem_at("contact.spacing",
                       fmt::format("{:.6g} m: expected at least {:.6g} m, which results in {} points",
                                   *arm.contact->spacing, length / most_places, most_places));
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (const Section& section : arm.section)
+    thinnest = std::min({thinnest, section.radius[0], section.radius[1]});
+  if (*arm.contact->spacing > 2 * thinnest)
+    reader.problem_at("contact.spacing",
+                      fmt::format("{:.6g} m: expected at most {:.6g} m, the smallest diameter of the tube; "
+                                  "otherwise obstacles could pass between two contact points",
+                                  *arm.contact->spacing, 2 * thinnest));
 }
 
 }  // namespace

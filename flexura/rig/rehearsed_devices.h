@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "flexura/camera/camera.h"
-#include "flexura/equipment/descriptor.h"
+#include "flexura/base/descriptor.h"
 #include "flexura/equipment/device_server.h"
 #include "flexura/equipment/grbl_device.h"
 #include "flexura/equipment/link.h"

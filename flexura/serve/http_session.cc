@@ -41,6 +41,7 @@ Step HttpSession::next() {
   }
   if (!head) return ReadMore{};
   last_ = !head->keep_alive;
+  has_shown_token_ = has_shown_token_ || site_->gate.has_token(*head);
   Step step = decide(*head);
   const bool is_let_in = std::holds_alternative<Question>(step) && site_->gate.has_bearer(*head);
   cookie_ = is_let_in ? "Set-Cookie: " + site_->gate.cookie(*head->find("host")) + "\r\n" : std::string();

@@ -53,6 +53,8 @@ class HttpSession {
   [[nodiscard]] Answer refuse(int status) const;
   /// Returns true if a request has begun to arrive.
   [[nodiscard]] bool begun() const { return !buffer_.empty(); }
+  /// Returns true if a request had the token.
+  [[nodiscard]] bool has_shown_token() const { return has_shown_token_; }
   /// Returns the number of bytes in the buffer.
   [[nodiscard]] std::size_t held() const { return buffer_.size(); }
 
@@ -70,6 +72,7 @@ class HttpSession {
   std::string buffer_;
   std::size_t looked_ = 0;  // Position in buffer_ up to which there is no end of a head.
   bool last_ = false;       // The current request is the last.
+  bool has_shown_token_ = false;
   std::string
       cookie_;  // Header line that sets the cookie in the answer, if the request had the token in its header.
 };

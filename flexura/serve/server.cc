@@ -72,10 +72,21 @@ void Server::Loop::accept() {
       accept_timer_.expires_after(accept_again);
       accept_timer_.async_wait([this](ErrorCode) { accept(); });
     } else {
-      if (visits_.size() < most_visits) welcome(std::move(socket));
+      if (visits_.size() < most_visits || make_room()) welcome(std::move(socket));
       accept();
     }
   });
+}
+
+// Ends the oldest visit without the token. So newcomers are heard however many others connect and say
+// nothing: each of them has the time until `most_visits` more have come. Returns false if all visits have the
+// token.
+bool Server::Loop::make_room() {
+  std::shared_ptr<Visit> oldest;
+  for (const std::shared_ptr<Visit>& visit : visits_)
+    if (!visit->has_shown_token() && (!oldest || visit->number() < oldest->number())) oldest = visit;
+  if (oldest) oldest->end();
+  return oldest != nullptr;
 }
 
 void Server::Loop::welcome(tcp::socket socket) {

@@ -52,6 +52,7 @@ class Server::Loop {
   [[nodiscard]] Site make_site(std::span<const Asset> assets) const;
   [[nodiscard]] std::string make_url() const;
   void accept();
+  [[nodiscard]] bool make_room();
   void welcome(tcp::socket socket);
   void wake();
   void flush();
@@ -65,6 +66,7 @@ class Server::Loop {
   Site site_;
   std::string url_;
   ClientId last_client_ = 0;
+  std::uint64_t last_visit_ = 0;
   std::set<std::shared_ptr<Visit>> visits_;
 
   std::mutex mutex_;

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <list>
 #include <memory>
 #include <stdexcept>
@@ -250,14 +252,51 @@ TEST_F(ServerTest, HasRoomForSoManyWhoSayNothingYet) {
   constexpr int most_visits = 64;
   std::list<RawClient> visitors;
   for (int i = 0; i < most_visits; ++i) visitors.emplace_back(server.port());
-  EXPECT_EQ(RawClient(server.port()).read_to_end(), "");
-  // That was immediate: the others' time has not expired. Connected clients are unaffected.
+  // One more takes the place of the oldest, whose time has not expired. Connected clients are unaffected.
+  RawClient newcomer(server.port());
+  newcomer.send(get("/"));
+  EXPECT_EQ(newcomer.read_answer().status, 200);
+  EXPECT_EQ(visitors.front().read_to_end(), "");
+  visitors.pop_front();
   visitors.front().send(get("/"));
   EXPECT_EQ(visitors.front().read_answer().status, 200);
   server.send(1, "good day");
   EXPECT_EQ(client.read_frame().payload, "good day");
   visitors.back().read_to_end();
   EXPECT_EQ(ask(get("/")).status, 200);
+}
+
+// 150 connections send a byte, are ended, and connect again, as fast as they can.
+TEST_F(ServerTest, HearsNewcomersThroughAFloodOfConnections) {
+  const Server& server = start();
+  std::atomic<bool> goes_on = true;
+  std::atomic<long> connected = 0;
+  std::vector<std::thread> flood;
+  for (int i = 0; i < 3; ++i)
+    flood.emplace_back([&] {
+      std::deque<RawClient> held;
+      while (goes_on) {
+        held.emplace_back(server.port());
+        (void)held.back().send("G");
+        ++connected;
+        if (held.size() > 50) held.pop_front();
+      }
+    });
+  while (connected < 500) std::this_thread::yield();
+  // A newcomer may itself be ended before it is heard, and then tries again.
+  const auto is_heard = [&] {
+    constexpr int most_tries = 200;
+    for (int i = 0; i < most_tries; ++i) {
+      RawClient newcomer(server.port());
+      if (newcomer.send(get("/", "Connection: close\r\n")) &&
+          newcomer.read_to_end().find(" 200 ") != std::string::npos)
+        return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(is_heard());
+  goes_on = false;
+  for (std::thread& one : flood) one.join();
 }
 
 TEST(ServerConfig, GivesAHandshakeFiveSecondsAndSilenceTwenty) {

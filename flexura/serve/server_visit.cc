@@ -51,6 +51,7 @@ class Server::Loop::Reply {
 
 Server::Loop::Visit::Visit(Loop& loop, tcp::socket socket)
     : loop_(&loop),
+      number_(++loop.last_visit_),
       session_(loop.site_, local_address(socket)),
       socket_(std::move(socket)),
       timer_(*loop.context_) {}

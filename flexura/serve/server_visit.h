@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -21,6 +22,10 @@ class Server::Loop::Visit : public std::enable_shared_from_this<Visit> {
     advance();
   }
   void close();
+  void end();
+  /// Number of the visit; later visits have larger numbers.
+  [[nodiscard]] std::uint64_t number() const { return number_; }
+  [[nodiscard]] bool has_shown_token() const { return session_.has_shown_token(); }
   void answer(Answer answer);
   /// Sends the host's answer to the last question.
   void answer(HttpAnswer host) { answer(session_.format(std::move(host))); }
@@ -35,9 +40,9 @@ class Server::Loop::Visit : public std::enable_shared_from_this<Visit> {
   void ask(std::string target);
   void upgrade(const Upgrade& how);
   void deadline(std::chrono::milliseconds limit);
-  void end();
 
   Loop* loop_;
+  std::uint64_t number_;
   HttpSession session_;
   tcp::socket socket_;
   net::steady_timer timer_;

@@ -173,7 +173,25 @@ void DynamicPlant::turn(Snapshot& at, double from, double to) const {
   }
 }
 
+// Steps, in halves of halves if the arm moves so far that it may have passed through an obstacle.
 void DynamicPlant::move(Snapshot& at, double from, double h) const {
+  constexpr double most_parts = 1024;
+  if (!contact_ || h < step_ / most_parts) {
+    step(at, from, h);
+    return;
+  }
+  const std::vector<NodeMotion> before = dynamics_.point_motions(at.state);
+  Snapshot then = at;
+  step(then, from, h);
+  if (!contact_->may_have_passed(before, dynamics_.point_motions(then.state))) {
+    at = std::move(then);
+    return;
+  }
+  move(at, from, 0.5 * h);
+  move(at, from + 0.5 * h, 0.5 * h);
+}
+
+void DynamicPlant::step(Snapshot& at, double from, double h) const {
   const double middle = from + h / (1 + rod_.spectral_radius);
   const TendonInput input{.displacements = inputs().displacements(middle, at.rotors.behind)};
   if (can_stretch_) {
@@ -185,6 +203,7 @@ void DynamicPlant::move(Snapshot& at, double from, double h) const {
   // A push that moves to another place during this step takes effect from the next step on.
   if (grabbed_) spring_->set(grabbed_at(middle) == grabbed_ ? inputs().spring(middle) : std::nullopt);
   const RodStep step = dynamics_.step(at.state, input, inputs().loads(middle), h);
+  if (step.is_anew) ++at.divided;
   if (!step.converged())
     throw SimulationError(fmt::format("at {:.4f} s the motion of the arm cannot be computed: {}", from,
                                       step.problem.empty() ? words(step.end) : step.problem));
@@ -359,6 +378,15 @@ std::string DynamicPlant::warning(double time) const {
     if (contact.is_deep)
       return fmt::format("the centerline of the arm is inside {}: the contact force is not valid",
                          contact.with);
+  // A few are due to impacts.
+  constexpr int many = 10;
+  const std::lock_guard lock(mutex_);
+  if (snapshot(time).divided >= many)
+    return fmt::format(
+        "steps of {} s are too long for the motion of the arm: dividing them is slow and less accurate; "
+        "choose "
+        "a shorter arm.time_step",
+        step_);
   return {};
 }
 

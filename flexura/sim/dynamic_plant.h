@@ -55,6 +55,7 @@ class DynamicPlant : public RodPlant {
     RodState state;
     RotorState rotors;
     std::vector<char> carried;  // For each payload, whether it is carried.
+    int divided = 0;            // Number of steps up to here that did not converge at once.
   };
   // Returns the last snapshot at or before a time.
   [[nodiscard]] const Snapshot& snapshot(double time) const;
@@ -63,6 +64,7 @@ class DynamicPlant : public RodPlant {
   void go_on(Snapshot& at, double from, double to) const;
   void turn(Snapshot& at, double from, double to) const;
   void move(Snapshot& at, double from, double h) const;
+  void step(Snapshot& at, double from, double h) const;
   void hand_over(Snapshot& at, double time) const;
   void set_lengths(double time) const;
   [[nodiscard]] std::vector<double> events(double from, double to) const;

@@ -10,23 +10,14 @@
 #include <system_error>
 #include <utility>
 
+#include "flexura/base/descriptor.h"
+
 namespace flexura {
 namespace {
 
 [[noreturn]] void fail(int error, const std::string& what, const std::filesystem::path& path) {
   throw std::system_error(error, std::generic_category(), what + " " + path.string());
 }
-
-/// Closes a descriptor at the end of its scope.
-struct Descriptor {
-  int value;
-  explicit Descriptor(int descriptor) : value(descriptor) {}
-  ~Descriptor() {
-    if (value >= 0) ::close(value);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-};
 
 }  // namespace
 
@@ -66,14 +57,14 @@ void AppendFile::close() {
 MappedFile::MappedFile(const std::filesystem::path& path) {
   // Opening a pipe without a writer would block forever.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (file.value < 0) fail(errno, "cannot read", path);
+  if (!file) fail(errno, "cannot read", path);
   struct stat status{};
-  if (::fstat(file.value, &status) != 0) fail(errno, "cannot read", path);
+  if (::fstat(file.get(), &status) != 0) fail(errno, "cannot read", path);
   if (S_ISDIR(status.st_mode)) fail(EISDIR, "cannot read", path);
   if (!S_ISREG(status.st_mode)) fail(EINVAL, "not a regular file:", path);
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) return;  // mmap refuses a length of zero.
-  void* const start = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.value, 0);
+  void* const start = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.get(), 0);
   if (start == MAP_FAILED) fail(errno, "cannot read", path);
   bytes_ = {static_cast<const std::byte*>(start), size};
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
+#include <utility>
 
 #include "flexura/store/mcap_cursor.h"
 
@@ -119,7 +121,11 @@ class McapScan {
         to_.library_ = record.content.take_text();
         break;
       case McapOp::chunk:
-        take_chunk(record.content);
+        if (check_ == McapCheck::skip) {
+          try_chunk(record.content);
+        } else {
+          take_chunk(record.content);
+        }
         break;
       case McapOp::data_end:
         take_data_end(record);
@@ -143,6 +149,22 @@ class McapScan {
         return true;
       default:
         return false;
+    }
+  }
+
+  /// Takes a chunk, or nothing of it if it is damaged.
+  void try_chunk(McapCursor& in) {
+    const std::size_t before = to_.messages_.size();
+    McapDamage damage;
+    McapCursor times = in;
+    try {
+      damage.from = times.take<std::uint64_t>(), damage.to = times.take<std::uint64_t>();
+      take_chunk(in);
+    } catch (const std::runtime_error& error) {
+      to_.messages_.resize(before, {});
+      chunk_ = McapChunks::plain;
+      damage.what = error.what();
+      to_.damage_.push_back(std::move(damage));
     }
   }
 
@@ -234,6 +256,8 @@ class McapScan {
     in.take_bytes(sizeof(std::uint64_t));  // Publication time.
     const auto channel = to_.channels_.find(id);
     if (channel == to_.channels_.end()) {
+      // A skipped chunk may have defined it.
+      if (!to_.damage_.empty()) return;
       in.fail("a message is on an unknown channel, " + std::to_string(id), record.start);
     }
     to_.messages_.push_back(
@@ -244,7 +268,8 @@ class McapScan {
     const auto crc = record.content.take<std::uint32_t>();
     McapCursor whole = cursor_;
     data_end_ = cursor_.position();
-    check_crc(crc, whole.since(0).first(record.start), record.content, "the data section's");
+    if (to_.damage_.empty())
+      check_crc(crc, whole.since(0).first(record.start), record.content, "the data section's");
   }
 
   void finish(Record& record) {

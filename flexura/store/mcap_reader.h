@@ -31,9 +31,16 @@ struct McapMessage {
   [[nodiscard]] std::string text() const { return chunks->text(chunk, offset, size); }
 };
 
-/// Whether to verify checksums (`crc`) or only the structure. With `structure`, all messages of a damaged log
-/// with intact structure are read.
-enum class McapCheck : std::uint8_t { crc, structure };
+/// How to handle damage. `crc`: checksums are verified, and any damage is an error. `structure`: only the
+/// structure is verified; all messages of a damaged log with intact structure are read. `skip`: as `crc`, but
+/// damaged chunks are skipped and listed in McapReader::damage().
+enum class McapCheck : std::uint8_t { crc, structure, skip };
+
+/// A damaged chunk.
+struct McapDamage {
+  std::uint64_t from = 0, to = 0;  ///< Times of its first and last message according to its header, ns.
+  std::string what;                ///< Error message, with the byte in the log.
+};
 
 /// Reads a whole log of this or another program. An McapReader reads the data section of the log from start
 /// to end. Chunks may be plain or compressed by zstd. Memory grows only with the number of messages: plain
@@ -57,6 +64,8 @@ class McapReader {
   /// Returns the name of the program that wrote the log, from its header.
   [[nodiscard]] const std::string& library() const { return library_; }
   [[nodiscard]] bool truncated() const { return truncated_; }
+  /// Returns the chunks that were skipped, in the file's order; only with McapCheck::skip.
+  [[nodiscard]] const std::vector<McapDamage>& damage() const { return damage_; }
 
  private:
   friend class McapScan;
@@ -67,6 +76,7 @@ class McapReader {
   std::vector<McapMessage> messages_;
   std::string library_;
   bool truncated_ = false;
+  std::vector<McapDamage> damage_;
 };
 
 }  // namespace flexura

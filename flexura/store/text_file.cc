@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -12,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/base/descriptor.h"
 #include "flexura/base/source.h"
 
 namespace flexura {
@@ -32,22 +34,58 @@ bool is_endless(const std::filesystem::path& file, const std::filesystem::file_s
   return !is_terminal;
 }
 
+// Returns true for a pipe with a place in the file system. The standard input and pipes of a shell,
+// /dev/fd/63, have none.
+bool is_named_pipe(const std::filesystem::path& file, const std::filesystem::file_status& status) {
+  std::error_code error;
+  const auto place = std::filesystem::weakly_canonical(file, error);
+  return std::filesystem::is_fifo(status) && !error && !place.string().starts_with("/proc/");
+}
+
+// Appends to `text` what comes through a named pipe until its writers have closed it, or until `text` has
+// more than `max_bytes`. A pipe that is opened in the usual way waits for a writer for ever.
+void read_named_pipe(const std::filesystem::path& file, std::size_t max_bytes, double longest_silence,
+                     std::string& text) {
+  const Descriptor pipe(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (!pipe) throw input_error(file.string(), fmt::format("cannot be read: {}", std::strerror(errno)));
+  std::string piece(std::size_t{64} << 10, '\0');
+  while (text.size() <= max_bytes) {
+    pollfd event{pipe.get(), POLLIN, 0};
+    const int ready = ::poll(&event, 1, static_cast<int>(1000 * longest_silence));
+    if (ready < 0 && errno == EINTR) continue;
+    if (ready == 0)
+      throw input_error(file.string(), fmt::format("is a pipe into which nothing was written for {:g} s: "
+                                                   "expected a file",
+                                                   longest_silence));
+    const ssize_t got = ::read(pipe.get(), piece.data(), piece.size());
+    if (got < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (got < 0) throw input_error(file.string(), "cannot be read to its end");
+    if (got == 0) return;
+    text.append(piece, 0, static_cast<std::size_t>(got));
+  }
+}
+
 }  // namespace
 
-std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes) {
+std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes, double longest_silence) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (status.type() == std::filesystem::file_type::not_found)
     throw input_error(file.string(), "no such file");
   if (std::filesystem::is_directory(status)) throw input_error(file.string(), "is a folder: expected a file");
   if (is_endless(file, status)) throw input_error(file.string(), "is a device: expected a file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw input_error(file.string(), fmt::format("cannot be read: {}", std::strerror(errno)));
   const auto too_large = [&] {
     return input_error(file.string(),
                        fmt::format("is larger than {} MiB: expected a smaller file", max_bytes >> 20));
   };
   std::string text;
+  if (is_named_pipe(file, status)) {
+    read_named_pipe(file, max_bytes, longest_silence, text);
+    if (text.size() > max_bytes) throw too_large();
+    return text;
+  }
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw input_error(file.string(), fmt::format("cannot be read: {}", std::strerror(errno)));
   if (std::filesystem::is_regular_file(status)) {
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (!error && size > max_bytes) throw too_large();

@@ -11,9 +11,11 @@ namespace flexura {
 /// as existing. The attempt to open it then reports the reason.
 [[nodiscard]] bool is_missing(const std::filesystem::path& path);
 
-/// Returns the bytes of a file. Throws InputError if the file cannot be read, is not a regular file or has
-/// more than `max_bytes`.
-[[nodiscard]] std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes);
+/// Returns the bytes of a file or of a pipe. Throws InputError if it cannot be read or has more than
+/// `max_bytes`, for a folder or a device, and for a named pipe (FIFO) into which nothing is written for
+/// `longest_silence`, s. Waits without limit for the standard input.
+[[nodiscard]] std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes,
+                                         double longest_silence = 10);
 
 /// Returns the path of the file `name` in `folder` or below it, after resolving links. Throws InputError,
 /// without a position, if the file is outside `folder` or is not a regular file.

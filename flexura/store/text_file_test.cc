@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "flexura/base/source.h"
 #include "tests/support/full_disk.h"
@@ -43,6 +46,24 @@ TEST_F(TextFileTest, SaysWhyAFileCannotBeRead) {
   EXPECT_THAT(refusal("/dev/zero"), HasSubstr("is a device: expected a file"));
   write_new_file(folder_.path() / "long", std::string(101, 'x'));
   EXPECT_THAT(refusal(folder_.path() / "long"), HasSubstr("is larger"));
+}
+
+TEST_F(TextFileTest, DoesNotWaitForEverForAWriterOfAPipe) {
+  const auto pipe = folder_.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  try {
+    (void)read_text_file(pipe, 100, 0.02);
+    ADD_FAILURE() << "nothing was written";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("pipe: is a pipe into which nothing was written for 0.02 s: expected a file"));
+  }
+  std::thread writer([&] { std::ofstream(pipe) << "first " << std::flush << "and second"; });
+  EXPECT_EQ(read_text_file(pipe, 100, 60), "first and second");
+  writer.join();
+  std::thread writer_of_more([&] { std::ofstream(pipe) << std::string(101, 'x'); });
+  EXPECT_THAT(refusal(pipe), HasSubstr("is larger than"));
+  writer_of_more.join();
 }
 
 TEST_F(TextFileTest, LooksForNoFileInAFolderThatIsALinkToItself) {

@@ -112,6 +112,9 @@ void Recording::read_marks() {
     marks_.push_back({time, time, level_name(event.level), event.name, event.message});
   }
   read_summary();
+  for (const McapDamage& damage : log_.damage())
+    marks_.push_back({seconds(damage.from), seconds(damage.to), "warning", "log",
+                      "the log is damaged: messages are missing"});
   if (log_.truncated())
     marks_.push_back(
         {duration(), duration(), "warning", "log", "the run was interrupted: its log ends here"});

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "flexura/log/messages.h"
+#include "flexura/log/results_log.h"
 #include "flexura/store/mcap_reader.h"
 #include "flexura/tasks/servo/servo_messages.h"
 #include "flexura/view/calibration_extras.h"
@@ -29,8 +30,8 @@ class Recording {
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] const ViewedRigPtr& rig() const { return rig_; }
-  /// Returns whether the log is incomplete because the run was killed.
-  [[nodiscard]] bool is_truncated() const { return log_.truncated(); }
+  /// Returns what is missing in the log (log_notes).
+  [[nodiscard]] std::vector<std::string> notes() const { return log_notes(log_); }
   [[nodiscard]] const std::vector<Mark>& marks() const { return marks_; }
   [[nodiscard]] double duration() const {
     return seconds(states_.back().time);

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "flexura/equipment/descriptor.h"
+#include "flexura/base/descriptor.h"
 
 namespace flexura {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "flexura/equipment/aravis_camera.h"
-#include "flexura/equipment/descriptor.h"
+#include "flexura/base/descriptor.h"
 #include "tests/support/numbered_frames.h"
 #include "tests/support/spawned.h"
 

@@ -260,7 +260,8 @@ int export_command(const ExportArguments& arguments, std::ostream& out, std::ost
     written = result.folder, truncated = result.truncated;
   }
   progress.clear();
-  if (truncated) err << "note: the run was interrupted; exported up to the last complete chunk of its log\n";
+  if (truncated)
+    err << "note: the run was interrupted; the export contains its log up to the last complete chunk\n";
   const char* const films_or_tables = format == "csv" ? "tables" : "films";
   print_line(out, is_gltf ? "glTF" : films_or_tables, written.string());
   return exit_done;

@@ -16,7 +16,7 @@ extern const std::array<double, 3> report_obstacle_color;
 /// Result of an export as glTF.
 struct GltfExport {
   std::filesystem::path file;  ///< The new file.
-  bool truncated = false;      ///< Whether the run was interrupted: its log ends without a summary.
+  bool truncated = false;      ///< Whether the run was interrupted, so that its log ends without a summary.
 };
 
 /// Writes the motion of a run's arm as a binary glTF 2.0 file. The arm is an animated tube with a skin on

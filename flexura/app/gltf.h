@@ -25,7 +25,7 @@ struct GltfMesh {
   std::vector<std::uint32_t> triangles;
 };
 
-/// A mesh and its material. A node shows one or more parts.
+/// A part of a node: a mesh and its material. A node shows one or more parts.
 struct GltfPart {
   GltfMesh mesh;
   std::size_t material = 0;

@@ -62,9 +62,7 @@ void add_measure(CLI::App& app, Command& chosen) {
       ->add_option("--camera", arguments->camera,
                    "File of calibrated cameras (TOML): one camera for all pictures, or one per picture")
       ->type_name("FILE");
-  measure
-      ->add_option("--radius", arguments->radius,
-                   "Radius of the arm, m: makes it possible to estimate depths")
+  measure->add_option("--radius", arguments->radius, "Radius of the arm, m; needed to estimate depths")
       ->type_name("R");
   measure
       ->add_option("--gamma", arguments->gamma,
@@ -90,7 +88,7 @@ void add_estimate(CLI::App& app, Command& chosen) {
       add_command(app, "estimate", command_group::pictures,
                   "Estimate the arm's shape from pictures of two or more cameras",
                   "flexura estimate front.png side.png --cameras cameras.toml --arm arm.toml");
-  estimate->add_option("IMAGE", arguments->images, "Picture files, one of each camera")
+  estimate->add_option("IMAGE", arguments->images, "Picture files, one from each camera")
       ->type_name("")
       ->required();
   estimate

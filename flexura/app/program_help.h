@@ -37,7 +37,8 @@ struct CommandHelp {
   std::vector<OptionHelp> options;
 };
 
-/// Description of all commands. The help, the shells' completion and the manual page are made from it.
+/// Description of all commands. The program makes its help, the completion scripts and the manual page from
+/// this description.
 struct ProgramHelp {
   std::string name;
   std::string version;

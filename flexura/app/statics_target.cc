@@ -20,7 +20,7 @@ const Table<StaticsPoint>& fields_of(const StaticsPoint*) {
   static const auto table =
       Table<StaticsPoint>("statics point", "Target of a point of the arm.")
           .field("at", &StaticsPoint::at,
-                 {.meaning = "its arc length at rest", .unit = Unit::metre, .range = at_least(0)})
+                 {.meaning = "the point's arc length at rest", .unit = Unit::metre, .range = at_least(0)})
           .field("position", &StaticsPoint::position,
                  {.meaning = "its target position",
                   .unit = Unit::metre,

@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// Largest number of violations that get a drawing each.
+/// Largest number of violations with a drawing of their own.
 inline constexpr std::size_t max_pictured_violations = 4;
 
 /// Inserts the schedule's state at `time` (s) into the report's times and states, unless the report has a

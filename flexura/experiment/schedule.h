@@ -22,7 +22,7 @@ class Rig;
 class TaskRunner;
 struct MissedTarget;
 
-/// A task with its start and motion.
+/// Part of a schedule: a task with its start and motion.
 struct Leg {
   std::string name;  ///< Name of the task, or its kind (task_name).
   std::string kind;  ///< Kind of the task: "move", ...

@@ -43,7 +43,8 @@ class RunWatcher {
   /// Receives the arm's state at every clock step, and the measured axis positions of all cameras. `time`:
   /// time of the step, s. If the run simulates no rig, the axis positions are empty: the cameras are at rest.
   virtual void state(double time, const ArmState& state, std::span<const CameraReading> cameras) = 0;
-  /// Returns true if truth() must be called at the next step. The true arm is only computed in this case.
+  /// Returns true if the run must call truth() at the next step. The run computes the true arm only in this
+  /// case.
   [[nodiscard]] virtual bool needs_truth() { return false; }
   /// Receives the true arm at a clock step, if it is known, after the call of state().
   virtual void truth(double /*time*/, const TrueArm& /*arm*/) {}

@@ -89,12 +89,13 @@ const Table<SceneMessage>& fields_of(const SceneMessage*) {
 }
 
 const Table<FrameMessage>& fields_of(const FrameMessage*) {
-  static const auto table = Table<FrameMessage>("foxglove.FrameTransform", "Pose of a frame in another.")
-                                .field("timestamp", &FrameMessage::timestamp, {})
-                                .field("parent_frame_id", &FrameMessage::parent_frame_id, {})
-                                .field("child_frame_id", &FrameMessage::child_frame_id, {})
-                                .field("translation", &FrameMessage::translation, {.meaning = "m"})
-                                .field("rotation", &FrameMessage::rotation, {});
+  static const auto table =
+      Table<FrameMessage>("foxglove.FrameTransform", "Pose of a frame relative to another frame.")
+          .field("timestamp", &FrameMessage::timestamp, {})
+          .field("parent_frame_id", &FrameMessage::parent_frame_id, {})
+          .field("child_frame_id", &FrameMessage::child_frame_id, {})
+          .field("translation", &FrameMessage::translation, {.meaning = "m"})
+          .field("rotation", &FrameMessage::rotation, {});
   return table;
 }
 

@@ -33,7 +33,8 @@ inline constexpr double tallest_plot = 430.0;  ///< Largest height of a plot, pa
 /// Ticks of an axis.
 struct Ticks {
   std::vector<double> values;  ///< Increasing multiples of 1, 2 or 5 times a power of ten, inside the range.
-  std::vector<std::string> labels;  ///< Labels, one per value, all with equal numbers of decimals.
+  std::vector<std::string>
+      labels;  ///< Labels of the values, one per value, all with the same number of decimals.
 };
 
 /// Returns ticks for a range of positive extent: at most `most` (>= 2), and as many as possible.

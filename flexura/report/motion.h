@@ -18,14 +18,14 @@ inline constexpr std::size_t max_shown_numbers = 200'000;
 
 /// Returns increasing indices of at most `most` (>= 2) of the increasing `times`. The indices include the
 /// first and the last time, and the times nearest to those in `desired`. If `desired` has more than most / 2
-/// times, only an even selection of these is included. The other indices are evenly spaced.
+/// times, the result includes only an evenly spaced selection of them. The other indices are evenly spaced.
 [[nodiscard]] std::vector<std::size_t> kept_indices(const std::vector<double>& times,
                                                     const std::vector<double>& desired, std::size_t most);
 
-/// Violations that one drawing shows, at the time when they are worst.
+/// Violations that one drawing shows, and the state at the time when these violations are worst.
 struct UnsafeMoment {
   std::vector<std::size_t> violations;  ///< Indices in ReportMotion::violations.
-  std::size_t state = 0;                ///< Index of the state nearest to this time.
+  std::size_t state = 0;                ///< Index of the state nearest to the worst time.
 };
 
 /// The part of a run that its report shows.

@@ -19,7 +19,7 @@ struct FeatureMark {
   std::vector<Eigen::Vector2d> seen, desired;
 };
 
-/// Draws the features that a law compares into the pictures.
+/// Draws into the pictures the features that a law compares.
 ///
 /// - `points`, `silhouettes`: the pixels of the points, or of the edges.
 /// - `chords`, `potential`: chords. A target chord is drawn as the measured chord, rotated about its middle,
@@ -30,9 +30,9 @@ class FeatureMarker {
  public:
   FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points);
 
-  /// Returns the marks in both pictures of an observation, with the target at the observation's time. Empty
-  /// if no shape was estimated from the observation. Chords are those measured in these pictures, even if the
-  /// law tracks their angles by optical flow.
+  /// Returns the marks in both pictures of an observation, with the target at the observation's time. Returns
+  /// no marks if no shape was estimated from the observation. Chords are those measured in these pictures,
+  /// even if the law tracks their angles by optical flow.
   [[nodiscard]] std::array<std::vector<FeatureMark>, 2> of(const ServoObservation& observed);
 
  private:

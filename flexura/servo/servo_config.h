@@ -50,8 +50,8 @@ enum class ServoLawKind : std::uint8_t {
 /// Source of the chord angles.
 enum class ServoMeasure : std::uint8_t {
   picture,  ///< Each picture is measured by itself.
-  flow,     ///< Angle of the previous picture plus its change by optical flow, corrected towards the angle in
-            ///< each new picture.
+  flow,  ///< Sum of the angle in the previous picture and its change by optical flow, corrected towards the
+         ///< angle in each new picture.
 };
 
 /// Source of the derivative of the arm's shape with respect to its drives. The derivatives of features with
@@ -123,12 +123,13 @@ struct ServoConfig : ServoSettings {
       goals;
   /// Increasing arc lengths of the middles of the arm's bands on the unstretched arm, m.
   std::vector<double> markers = {};
-  double step = 1.0 / 30;   ///< Time between commands, s.
-  bool keeps_steps = true;  ///< Whether to keep ServoResult::steps. Their memory grows with the duration.
+  double step = 1.0 / 30;  ///< Time between commands, s.
+  bool keeps_steps =
+      true;  ///< Whether to keep ServoResult::steps. The memory of these steps grows with the duration.
   std::optional<Drive> drive = {};  ///< Drive for the limiter (LimiterConfig).
   double list_step = 0;             ///< LimiterConfig::list_step, s.
-  /// Last commanded state, if known. Readings of the drives are rounded to motor steps and therefore less
-  /// exact.
+  /// Last commanded state, if known. It is more exact than readings of the drives, which are rounded to motor
+  /// steps.
   std::optional<ArmState> sent = {};
   std::vector<Obstacle> obstacles = {};
 };
@@ -139,7 +140,7 @@ const std::vector<std::string>& names_of(const ServoLawKind*);
 const std::vector<std::string>& names_of(const ServoMeasure*);
 const std::vector<std::string>& names_of(const ServoJacobian*);
 
-/// Throws std::invalid_argument, with the reason, for values that are invalid whatever the rig.
+/// Throws std::invalid_argument, with the reason, for values that are invalid for every rig.
 void check_servo(const ServoConfig& config);
 
 /// Returns the frame rate of the slower of two cameras, Hz. Within one period of this rate, both cameras take

@@ -35,14 +35,15 @@ struct McapMessage {
 /// with intact structure are read.
 enum class McapCheck : std::uint8_t { crc, structure };
 
-/// Reads a whole log of this or another program. An McapReader reads the data section of the log from start
-/// to end. Chunks may be plain or compressed by zstd. Memory grows only with the number of messages: plain
-/// data remain in the mapped file, and only a few decompressed chunks are kept. If the writer of a log was
-/// killed, the log is read up to its last complete chunk, and `truncated` is set. Constructors throw
-/// std::runtime_error with the log's name and the byte of the error. Errors are a file that is not a log, a
-/// record that does not fit, a wrong CRC, a message without channel, and an unknown compression. Further
-/// errors are a chunk that does not decompress to its stated size, and a size above mcap_most_chunk.
-/// Compressed chunks must not have more than 64 MiB and 256 times the file's size in total.
+/// Reads a whole log that Flexura or another program wrote. An McapReader reads the data section of the log
+/// from start to end. Chunks may be plain or compressed by zstd. Memory grows only with the number of
+/// messages: plain data remain in the mapped file, and only a few decompressed chunks are kept. If the writer
+/// of a log was killed, the log is read up to its last complete chunk, and `truncated` is set. Constructors
+/// throw std::runtime_error with the log's name and the byte of the error. Errors are a file that is not a
+/// log, a record that is longer than the data around it, a wrong CRC, a message without channel, and an
+/// unknown compression. Further errors are a chunk that does not decompress to its stated size, and a size
+/// above mcap_most_chunk. Compressed chunks must not have more than 64 MiB and 256 times the file's size in
+/// total.
 class McapReader {
  public:
   /// Throws std::system_error if the file cannot be read.

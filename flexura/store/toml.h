@@ -28,13 +28,13 @@ inline constexpr std::size_t max_toml_bytes = std::size_t{16} << 20;
 /// Reads a TOML file. `include = ["rig.toml", ...]` takes values from the named files, which must be in the
 /// file's folder or below. The file's own values replace included ones: tables are merged key by key, arrays
 /// are replaced. Throws InputError for the errors of parse_toml and for a missing or unreadable file. Also
-/// throws it for an include that is outside the folder, circular or nested too deeply. `repeated`: as in
-/// parse_toml(), for all files.
+/// throws InputError for an include that is outside the folder, circular or nested too deeply. `repeated`: as
+/// in parse_toml(), for all files.
 [[nodiscard]] Node read_toml_file(const std::filesystem::path& file,
                                   std::vector<Problem>* repeated = nullptr);
 
-/// Returns the table as a TOML document that parses to equal values, with comments. `info`: source of the
-/// units in the comments.
+/// Returns the table as a TOML document that parses to equal values, with comments. `info`: description of
+/// the table, with the units for the comments.
 [[nodiscard]] std::string write_toml(const Node& table, const TableInfo& info);
 
 }  // namespace flexura

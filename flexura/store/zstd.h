@@ -21,8 +21,8 @@ struct ByteBuffer {
 };
 
 /// Returns the content of frames of Zstandard that must decompress to exactly `size` bytes. The function
-/// never writes more bytes. Before allocating memory, the function refuses a size that the frames cannot
-/// contain. Throws std::runtime_error with the reason for invalid frames.
+/// never writes more than `size` bytes. Before allocating memory, the function refuses a size that the frames
+/// cannot contain. Throws std::runtime_error with the reason for invalid frames.
 [[nodiscard]] ByteBuffer unzstd(std::span<const std::byte> frames, std::size_t size);
 
 }  // namespace flexura

@@ -27,7 +27,7 @@ namespace flexura {
 ///   void read_files(KIND&, const Setup&, const Node& written, const std::string& path,
 ///                   std::vector<Problem>&);
 ///   LogTables log_tables(const KIND*);
-/// Summaries list the kinds in this order.
+/// Summaries list the kinds of tasks in the order of this list.
 using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask, StudyTask,
                                 CalibrateTask, ServoTask, DynamicsTask>;
 

@@ -41,8 +41,8 @@ const Table<Quantity>& fields_of(const Quantity*);
 /// the model, and the tasks. The range of a tendon is computed from the bend limits of its sections. A
 /// section without a limit counts as limited to a full turn.
 [[nodiscard]] Node controls_node(const ViewedRig& rig);
-/// Returns CONTROLS for a live rig. CONTROLS includes the actuators and switches for clients, if there are
-/// any. Coupled tendons are omitted if there are actuators.
+/// Returns CONTROLS for a live rig. The answer includes the rig's actuators and switches, if there are any.
+/// Coupled tendons are omitted if there are actuators.
 [[nodiscard]] Node live_controls_node(const ViewedRig& rig);
 
 }  // namespace flexura

@@ -20,10 +20,10 @@
 
 namespace flexura {
 
-/// Connects a server and a viewer. Receives events on the server's thread without blocking, and passes them
-/// to the viewer on a separate thread. While a client is connected, the viewer's thread advances the viewer
-/// 60 times a second. Errors in the viewer's thread are reported to the affected clients and do not stop the
-/// thread.
+/// Passes messages between a server and a viewer. Receives events on the server's thread without blocking,
+/// and passes them to the viewer on a separate thread. While a client is connected, the viewer's thread
+/// advances the viewer 60 times a second. Errors in the viewer's thread are reported to the affected clients
+/// and do not stop the thread.
 class FrontDoor : public Host {
  public:
   struct Config {

@@ -25,8 +25,8 @@ class PictureSession : public Session {
  protected:
   PictureSession(const ViewedRigPtr& rig, Messenger& messenger, Background& background);
 
-  /// Handles the requests that are common to both kinds of session. The handlers of both kinds derive from
-  /// this struct.
+  /// Handles the requests that live rigs and recordings have in common. The request handlers of live rigs and
+  /// of recordings derive from this struct.
   struct Taker {
     PictureSession& pictures;
     ClientId client;

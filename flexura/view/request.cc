@@ -31,7 +31,7 @@ namespace {
 constexpr double farthest = 1e9;
 constexpr std::size_t most_sections = 10000;
 const NumberRange any_place = between(-farthest, farthest);
-constexpr const char* speed_meaning = "relative to real time; 0: as fast as possible";
+constexpr const char* speed_meaning = "speed relative to real time; 0: as fast as possible";
 const NumberRange speed_range = between(0, 1000);
 
 template <class S>

@@ -68,7 +68,7 @@ struct StateMessage {
   bool is_recording = false;
   bool is_unsafe = false;
   bool is_weightless = false;  ///< Whether weight and loads are switched off.
-  /// Number of discontinuous changes of the whole state so far, modulo 65536.
+  /// Number of jumps of the whole state so far (for example by a reset), modulo 65536.
   std::uint16_t leaps = 0;
   std::uint32_t sequence = 0;
   double time = 0;  ///< Time, s.

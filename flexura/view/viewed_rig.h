@@ -38,8 +38,8 @@ struct PushScale {
   double length = 0;  ///< Length of the arm at rest, m.
   /// Stiffness of the push spring, N/m: five times the stiffness of the arm's tip at the start.
   double stiffness = 0;
-  double most =
-      0;  ///< Largest force, N. If the arm were linear, this force would move the tip by the arm's length.
+  double most = 0;  ///< Largest force of a push, N: the force that would move the tip of a linear arm by the
+                    ///< arm's length.
 };
 
 /// A rig of an experiment, prepared for viewing. Immutable, so that threads can share it.
@@ -72,10 +72,10 @@ class ViewedRig {
   /// Returns the true positions of a camera's head and stage at the start.
   [[nodiscard]] CameraStance first_stance(std::size_t camera) const;
   /// Returns the true positions of a camera's head and stage for measured positions, without backlash and
-  /// quantisation. Differences between truth and model at the start remain.
+  /// quantisation. Initial differences between the true rig and its model do not change.
   [[nodiscard]] CameraStance stance(std::size_t camera, const CameraReading& reading) const;
-  /// Returns the positions that a camera's head and stage report at the true axis positions `stance`. This is
-  /// the inverse of stance().
+  /// Returns the positions that a camera's head and stage report at the true axis positions `stance`. This
+  /// function is the inverse of stance().
   [[nodiscard]] CameraReading reading(std::size_t camera, const CameraStance& stance) const;
   /// Returns the camera's view according to its model and measured positions.
   [[nodiscard]] View nominal_view(std::size_t camera, const CameraReading& reading) const;

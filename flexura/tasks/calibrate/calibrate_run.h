@@ -38,8 +38,8 @@ struct CalibrationRun {
   std::optional<LoopResult> loop;  ///< Result if the method is one of the paper's; `result` is then empty.
   std::vector<CommandedArc> arcs;  ///< Arcs of the methods "arcs" and "arcs-paper", one per camera.
   MotionPtr motion;                ///< Commanded motion of the arm, from the task's start.
-  /// True remaining errors at the cameras' final positions. Only for simulated rigs; the session does not
-  /// know them.
+  /// True remaining errors at the cameras' final positions. Known only for simulated rigs; the calibration
+  /// does not use these errors.
   std::optional<RigRemainder> truth;
   std::optional<std::array<double, 2>> true_focal =
       {};  ///< True focal lengths at the cameras' final positions, px; only for simulated rigs.

@@ -62,8 +62,8 @@ class DynamicsPlant {
   [[nodiscard]] const Eigen::Vector3d& base() const { return arm_.X_WB.position; }
 
   /// Returns the state of the experiment's arm with the directions of the distributed arm at the sections'
-  /// ends. Of arcs that differ by full turns, it uses those nearest to `before`. Both arms have the same
-  /// curve if the arm is planar and its angle is linear in each section.
+  /// ends. Several arcs that differ by full turns have these directions; the result has the arcs nearest to
+  /// `before`. Both arms have the same curve if the arm is planar and its angle is linear in each section.
   [[nodiscard]] ArmState state(const Eigen::VectorXd& x, const ArmState& before) const;
   /// Returns (theta, q) at the sections' ends, rad.
   [[nodiscard]] Eigen::Matrix2Xd end_angles(const Eigen::VectorXd& x) const;

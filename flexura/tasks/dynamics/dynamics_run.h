@@ -42,8 +42,8 @@ struct DynamicsRun {
   std::string stopped;                  ///< Why the task ended early, or "".
   std::optional<LyapunovVerdict>
       verdict;  ///< Agreement with the theory; missing if the task could not begin.
-  /// Differences from the theory. Empty if the run agrees with the theory, or if the law used measured angles
-  /// and the arm reached its target.
+  /// Differences from the theory. Empty if the run agrees with the theory, or if the arm reached its target
+  /// under a law that used measured angles.
   std::vector<std::string> reasons;
   DynamicsError remaining;  ///< Distance from the target at the end.
   /// Value of PotentialRun::left_over().

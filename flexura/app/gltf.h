@@ -55,7 +55,7 @@ class GltfDocument {
   /// Adds a node at a pose in the scene. `content` has the node's mesh, camera, children or skin as members
   /// such as {"mesh": 0}. It may be empty.
   std::size_t add_node(const std::string& name, const Pose& pose, const Node::Table& content = {});
-  /// Makes the node `child` a child of the node `parent`. The child's pose is then in the parent's axes.
+  /// Makes the node `child` a child of the node `parent`. The pose of the child is relative to the parent.
   void set_parent(std::size_t child, std::size_t parent);
   /// Adds a skin whose joints are these nodes. `rest` has the world pose of each joint for the undeformed
   /// mesh.

@@ -41,7 +41,7 @@ struct JogAxis {
 
 /// How the arm moves in a jog.
 struct ArmJog {
-  std::vector<double> pulled;  ///< Displacement of each tendon at the end, m.
+  std::vector<double> pulled;  ///< Displacement of each tendon at the end of the jog, m.
   ArmState from, to;           ///< Shapes of the model.
   double duration = 0;         ///< s
 };

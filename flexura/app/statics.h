@@ -26,10 +26,10 @@ class StaticsAnswers {
   /// found, it also has
   /// "tip":{"position":[..],"rotation":[w,x,y,z]},"tensions":[..],"displacements":[..],"strain_energy":..,
   /// "stable":..,"snapped":..,"ambiguous":.. and, if requested, "at":[poses]. For a target, the tensions have
-  /// the least effort among those that reach the target or come nearest to it. The answer then also has
-  /// "reached":.. and "residual":.. (m), "why_not":"..." if the target is not reached, and
-  /// "residual_angle":.. (rad) if an orientation was requested. The answer to an invalid line is
-  /// {"error":"..."}. No line makes this function throw an exception.
+  /// the least effort among those that reach the target or come nearest to it. The answer for a target also
+  /// has the keys "reached" and "residual" (m), "why_not" if the target is not reached, and "residual_angle"
+  /// (rad) if an orientation was requested. The answer to an invalid line is {"error":"..."}. No line makes
+  /// this function throw an exception.
   [[nodiscard]] std::string answer(std::string_view line);
   /// Returns the error in the line; "" for a valid line.
   [[nodiscard]] std::string problem(std::string_view line) const;

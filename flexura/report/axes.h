@@ -52,7 +52,7 @@ struct PlotFrame {
   Eigen::Vector2d corner;  ///< Top left corner of the plot, page units.
   Eigen::Vector2d size;    ///< Width and height of the plot, page units.
   bool y_down = false;     ///< Whether the y of data increases downwards.
-  bool y_log = false;      ///< Whether the y of data are exponents of ten. The axis then shows the powers.
+  bool y_log = false;  ///< Whether the y of data are exponents of ten, so that the axis shows powers of ten.
 
   [[nodiscard]] Eigen::Vector2d scale() const { return {size.x() / x.extent(), size.y() / y.extent()}; }
   /// Returns the page point of a data point.

@@ -31,9 +31,10 @@ struct LineChart {
   std::string legend =
       {};  ///< Name of the variable that distinguishes the series, such as "section"; may be empty.
   bool is_of_run =
-      false;  ///< Whether x are times of the run. The page's player then marks its time in the chart.
+      false;  ///< Whether x are times of the run, so that the page's player marks its time in the chart.
   std::vector<double> marks = {};  ///< Positions of fine vertical lines.
-  bool is_log = false;  ///< Whether values are exponents of ten. A logarithmic axis then shows the powers.
+  bool is_log =
+      false;  ///< Whether values are exponents of ten, so that a logarithmic axis shows powers of ten.
 
   /// Returns the label of the value axis, which states whether the axis is logarithmic.
   [[nodiscard]] std::string axis_label() const { return value_label + (is_log ? ", log scale" : ""); }

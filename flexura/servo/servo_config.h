@@ -36,7 +36,7 @@ enum class ServoLawKind : std::uint8_t {
   shape_potential,  ///< The estimated shape, by an artificial potential of its error, with dissipation.
 };
 
-/// Returns true if a law compares angles of chords. Optical flow can then track the angles.
+/// Returns true if a law compares angles of chords. Optical flow can track these angles.
 [[nodiscard]] constexpr bool has_chords(ServoLawKind law) {
   return law == ServoLawKind::chords || law == ServoLawKind::potential;
 }
@@ -78,7 +78,7 @@ struct ServoGoal {
 /// Default prior of the camera models' errors. The servo estimates these errors from the pictures of the arm
 /// and its base.
 struct ServoCameraPrior : ViewPrior {
-  /// Standard deviations of 0.02 rad, and 2 % of the focal length.
+  /// The default standard deviations are 0.02 rad for rotations and 2 % for the focal length.
   ServoCameraPrior() : ViewPrior{.rotation_std = 0.02, .focal_std = 0.02} {}
 };
 
@@ -104,8 +104,9 @@ struct ServoSettings {
       20;
   double hold_after = 0.3;   ///< Time without an observation after which the arm stops and waits, s.
   double give_up_after = 3;  ///< Time without an observation after which the servo fails, s.
-  /// Unexplained change of the arm's shape at which the servo holds the arm: root mean square along the arm,
-  /// share of its length (DisturbanceWatch). Default: 0.05 for an arm with a dynamic model and the Jacobian
+  /// The servo stops the arm if its shape changes by more than this value without a motion of the drives that
+  /// explains the change: root mean square along the arm, share of its length (DisturbanceWatch). Default:
+  /// 0.05 for an arm with a dynamic model and the Jacobian
   /// `model`; otherwise such changes are not detected.
   std::optional<double> disturbance = {};
   bool follow = false;            ///< Whether the heads turn and zoom to keep the arm in the pictures.

@@ -19,7 +19,7 @@ namespace flexura {
 struct McapMessage {
   const McapChannel* channel;
   std::uint64_t log_time;  ///< Simulated time, ns.
-  std::uint32_t sequence;  ///< Number of the message, counted by the writer; it may wrap.
+  std::uint32_t sequence;  ///< Number of the message, counted by the writer, modulo 2^32.
   std::uint32_t chunk;     ///< Number of the compressed chunk with the message's data, or McapChunks::plain.
   const McapChunks* chunks;  ///< Chunks of the reader.
   std::size_t offset;        ///< Start of the data in the chunk or in the file.

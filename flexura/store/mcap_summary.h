@@ -44,8 +44,8 @@ struct McapSummary {
 void put_schema(McapBytes& out, std::uint16_t id, const McapSchema& schema);
 void put_channel(McapBytes& out, std::uint16_t id, const McapSummary::Channel& channel);
 
-/// Appends everything after the data section: summary, summary offsets, footer and magic. `at`: position of
-/// this part in the file.
+/// Appends everything after the data section: summary, summary offsets, footer and magic bytes. `at`:
+/// position of this part in the file.
 void put_summary(McapBytes& out, std::uint64_t at, const McapSummary& summary);
 
 }  // namespace flexura

@@ -17,8 +17,9 @@ inline constexpr std::size_t max_toml_bytes = std::size_t{16} << 20;
 
 /// Parses a TOML document into nodes with positions. Throws InputError (source:line:column) at the first
 /// error: invalid TOML, text that is not UTF-8, or nesting that is too deep. Up to 20 repeated keys are
-/// reported together. If `repeated` is given, repeated keys are appended to it instead of being thrown. The
-/// document then has only the first value of each key, so that its other values can be checked.
+/// reported together. If `repeated` is given, repeated keys are appended to it instead of being thrown. With
+/// `repeated`, the document has only the first value of each key, so that the caller can check the other
+/// keys.
 [[nodiscard]] Node parse_toml(std::string_view text, const std::string& source,
                               std::vector<Problem>* repeated = nullptr);
 

@@ -11,7 +11,8 @@ namespace flexura {
 /// version of libzstd is equal. Throws std::runtime_error if libzstd fails.
 [[nodiscard]] std::vector<std::byte> zstd(std::span<const std::byte> bytes);
 
-/// Bytes in memory that are not initialised. Memory that was never written takes no space.
+/// Bytes in memory that are not initialised. The system provides physical memory only for bytes that are
+/// written.
 struct ByteBuffer {
   std::unique_ptr<std::byte[]> start;  ///< May be null if `size` is 0.
   std::size_t size = 0;                ///< In bytes.

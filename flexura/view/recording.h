@@ -69,8 +69,8 @@ class Recording {
   /// Returns the servo's last command at a time, s, with its observations in the pictures shown at that time.
   [[nodiscard]] std::optional<ShownServo> servo(double time) const;
   /// Measurements drawn at a time (s) belong to a picture: returns the index of the state at which this
-  /// picture was taken. The picture is that of a servo or calibration. Returns std::nullopt for a camera with
-  /// logged images, and at times without an active servo or calibration.
+  /// picture was taken. A servo or a calibration has measured the picture. Returns std::nullopt for a camera
+  /// with logged images, and at times without an active servo or calibration.
   [[nodiscard]] std::optional<std::size_t> measured_state(std::size_t camera, double time) const;
   /// Returns whether the log has a calibration.
   [[nodiscard]] bool has_calibration() const { return !decisions_.empty(); }

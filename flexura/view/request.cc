@@ -237,7 +237,7 @@ const Table<ExperimentRequest>& fields_of(const ExperimentRequest*) {
               reader.problem_at("add", fmt::format("= {}: expected \"pose\" or \"view\"",
                                                    Node{*experiment.add, {}}.brief()));
             if (is_view != experiment.camera.has_value())
-              reader.problem_at("camera", "expected a camera's name with add = \"view\", and only then");
+              reader.problem_at("camera", "expected a camera's name if, and only if, add = \"view\"");
             if (experiment.camera) check_camera(*experiment.camera, reader);
           });
   return table;

@@ -50,7 +50,8 @@ class ViewedRig {
   Experiment experiment;
   ArmModel model, truth;  ///< Model and truth of the arm.
   ArmState initial;       ///< Initial state of the true arm.
-  /// Whether the true arm is a rod. The simulated plant then computes the backbone instead of `truth`.
+  /// Whether the true arm is a rod. The backbone of a rod is computed by the simulated plant instead of
+  /// `truth`.
   bool is_rod;
   std::vector<PulledTendon> actuators;  ///< Tendons that can be pulled individually.
   bool has_weight = false;              ///< Whether weight or loads act on the true arm.

@@ -57,8 +57,7 @@ class DynamicsPlant {
   /// Returns the largest |q| of the target in the basis, rad. A polynomial may exceed its values at the
   /// nodes.
   [[nodiscard]] double largest_target_elevation() const;
-  /// Returns p_WB, m: the origin of the distributed arm's positions. The axes of these positions are those of
-  /// W.
+  /// Returns p_WB, m: the origin of the distributed arm's positions. These positions are in the axes of W.
   [[nodiscard]] const Eigen::Vector3d& base() const { return arm_.X_WB.position; }
 
   /// Returns the state of the experiment's arm with the directions of the distributed arm at the sections'

@@ -62,7 +62,7 @@ struct DynamicsRun {
   [[nodiscard]] DynamicsSampleMessage message(const DynamicsSample& sample) const;
 };
 
-/// Returns the law of a task for this arm.
+/// Returns the control law of a task of kind "dynamics" for this arm.
 [[nodiscard]] PotentialLaw potential_law_of(const DynamicsTask& task, const DynamicsPlant& plant);
 /// Returns the violated conditions of the theory.
 [[nodiscard]] std::vector<std::string> theory_violations(const DynamicsTask& task, const DynamicsPlant& plant,

@@ -32,7 +32,7 @@ struct ServoTargetShape {
                                                                                ArmState from);
 
 /// Returns the pictures of a target that is given by pictures. The picture files are in `folder` or below.
-/// Throws InputError if a picture is invalid or its size differs from that of its camera's pictures.
+/// Throws InputError if a picture is invalid or does not have the picture size of its camera.
 [[nodiscard]] RecordedViews recorded_views(const ServoTargetConfig& target,
                                            const std::array<CameraConfig, 2>& cameras,
                                            const std::filesystem::path& folder);

@@ -32,8 +32,8 @@ struct GltfPart {
 };
 
 /// A glTF 2.0 document with one scene, one skin at most and one animation at most (Khronos Group, "glTF 2.0
-/// Specification"). Each added element gets the next number of its kind, from 0. The axes are those of the
-/// world, with Y up, in metres. Equal calls produce equal bytes.
+/// Specification"). Functions that add an element return its index among the elements of its kind, from 0.
+/// The axes are those of the world, with Y up, in metres. Equal calls produce equal bytes.
 class GltfDocument {
  public:
   /// Motion of a node: its poses at the animation's times, in the axes of its parent. Between these times,

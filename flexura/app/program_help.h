@@ -15,7 +15,7 @@ enum class Takes {
   folder,
 };
 
-/// One option or positional argument of a command, as its help shows it.
+/// Description of one option or positional argument of a command for the help.
 struct OptionHelp {
   std::vector<std::string>
       /// Names of an option, such as "-h" and "--help", or the name of a positional argument, such as
@@ -27,7 +27,7 @@ struct OptionHelp {
   std::vector<std::string> choices;  ///< Allowed words, for Takes::choice.
 };
 
-/// One command, as its help shows it.
+/// Description of one command for the help.
 struct CommandHelp {
   std::string name;
   std::string group;    ///< Heading under which `flexura --help` lists the command.

@@ -108,8 +108,8 @@ const Table<TensionsMessage>& fields_of(const TensionsMessage*) {
           .field("tensions", &TensionsMessage::tensions,
                  {.meaning = "Tension of each tendon at the arm's base, N."})
           .field("lost_steps", &TensionsMessage::lost_steps,
-                 {.meaning = "Microsteps that each motor has lost so far; its controller does not know them. "
-                             "Only for arms with drives."});
+                 {.meaning = "Microsteps that each motor has lost so far; its controller does not notice "
+                             "this loss. Missing for arms without drives."});
   return table;
 }
 

@@ -93,8 +93,8 @@ struct ArmReadingMessage {
 struct TensionsMessage {
   double time = 0;               ///< In s.
   std::vector<double> tensions;  ///< Tension of each tendon at the arm's base, N.
-  /// Microsteps that each motor has lost so far; its controller does not know them. Only for arms with
-  /// drives.
+  /// Microsteps that each motor has lost so far; its controller does not notice this loss. Missing for arms
+  /// without drives.
   std::optional<std::vector<double>> lost_steps;
 };
 

@@ -25,7 +25,7 @@ struct LineChart {
   std::string heading;      ///< Heading, such as "bend of each section".
   std::string x_label;      ///< Name of the x axis, such as "t (s)".
   std::string value_label;  ///< Name of the value axis, such as "bend_x (deg)".
-  double least = 1.0;  ///< Smallest extent of the value axis. With it, small noise does not fill the chart.
+  double least = 1.0;  ///< Smallest extent of the value axis, so that small noise does not fill the chart.
   std::vector<double> x = {};  ///< Values of x, increasing; at least one.
   std::vector<ChartSeries> series = {};
   std::string legend =

@@ -53,8 +53,8 @@ struct ReportMotion {
   [[nodiscard]] bool is_unsafe(std::size_t section, std::size_t i) const;
   [[nodiscard]] std::size_t end() const { return times.size() - 1; }
   [[nodiscard]] const Eigen::Vector3d& tip(std::size_t i) const { return backbones[i].tip().position; }
-  /// Returns true if cord angles are relative to W's +X, as in the paper. This is the case for an arm in XOY
-  /// whose archings are counter-clockwise seen from camera 1.
+  /// Returns true if cord angles are relative to W's +X, as in the paper. The result is true for an arm in
+  /// XOY whose archings are counter-clockwise seen from camera 1.
   [[nodiscard]] bool has_cord_angles() const { return in_plane && arm.X_WB.rotation(2, 1) < 0.0; }
   /// Returns 2 if the tip moves in the plane XOY (Z = 0), otherwise 3.
   [[nodiscard]] int tip_coordinates() const;

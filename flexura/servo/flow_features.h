@@ -16,7 +16,7 @@ namespace flexura {
 
 /// Features of chords whose angles are tracked from picture to picture by the optical flow at the chords'
 /// ends. The tracked angles are corrected towards the angles measured in each picture (docs/servo.md, eq.
-/// 25). This is the paper's continuous measurement.
+/// 25). This method is the paper's continuous measurement.
 class FlowFeatures : public ServoFeatures {
  public:
   /// `anchor`: time constant with which a tracked angle approaches the measured angle, s. `whites`: the
@@ -45,7 +45,7 @@ class FlowFeatures : public ServoFeatures {
 
   /// Angles of one camera's last observation, rad, from u towards v. `carried` and `measured` are the tracked
   /// and the measured angles of the chords' images. `turns` are the changes of the angles since the previous
-  /// observation, computed from the flow. They are NaN where the flow is missing, and at the first
+  /// observation, computed from the flow. `turns` are NaN where the flow is missing, and at the first
   /// observation.
   struct Angles {
     std::vector<double> carried, measured, turns;

@@ -129,8 +129,8 @@ struct ServoConfig : ServoSettings {
       true;  ///< Whether to keep ServoResult::steps. The memory of these steps grows with the duration.
   std::optional<Drive> drive = {};  ///< Drive for the limiter (LimiterConfig).
   double list_step = 0;             ///< LimiterConfig::list_step, s.
-  /// Last commanded state, if known. It is more exact than readings of the drives, which are rounded to motor
-  /// steps.
+  /// Last commanded state, if known. This state is more exact than readings of the drives, which are rounded
+  /// to motor steps.
   std::optional<ArmState> sent = {};
   std::vector<Obstacle> obstacles = {};
 };

@@ -50,14 +50,15 @@ class ServoSessionWatcher {
   ServoSessionWatcher(const ServoSessionWatcher&) = delete;
   ServoSessionWatcher& operator=(const ServoSessionWatcher&) = delete;
 
-  /// Called after the arm was commanded to reach `state` in `duration` s. `time`: time of the command, s of
-  /// the rig's clock. The session does not call this function for refused commands.
+  /// The session calls this function after it has commanded the arm to reach `state` in `duration` s. `time`:
+  /// time of the command, s of the rig's clock. The session does not call this function for refused commands.
   virtual void arm_sent(double time, const ArmState& state, double duration) = 0;
-  /// Called after two simultaneous pictures were measured.
+  /// The session calls this function after it has measured two simultaneous pictures.
   virtual void seen(const ServoObservation& /*observed*/) {}
   /// Called after each step.
   virtual void stepped(const ServoStep& /*step*/) {}
-  /// Called with an event for the log, such as "camera side does not see the arm: ...".
+  /// The session calls this function with an event for the log, such as "camera side does not see the arm:
+  /// ...".
   virtual void reported(double /*time*/, const std::string& /*what*/) {}
   /// Returns true to end the servo early.
   virtual bool is_cancelled() { return false; }

@@ -76,7 +76,7 @@ struct TaskEnd {
 /// Estimated work of a task, for the display of progress. Only the ratios between the parts of the work
 /// matter.
 struct TaskWork {
-  double duration = 0;    ///< Duration of the task, s. It determines the work of the rig.
+  double duration = 0;    ///< Duration of the task, s, to which the work of the rig is related.
   double simulating = 0;  ///< Computing time of TaskRunner::simulate, s.
   double performing = 0;  ///< Computing time of TaskRunner::perform, s.
   double finishing = 0;   ///< Computing time of TaskRunner::finish, s.
@@ -107,7 +107,7 @@ class TaskRunner {
   [[nodiscard]] virtual TaskWork work() const = 0;
 
   /// Returns the plan for an arm in the state `from`. `done`: the performed motion, or null if it is not
-  /// known. With null, the plan contains the largest possible motion.
+  /// known. If `done` is null, the plan contains the largest possible motion.
   [[nodiscard]] virtual TaskPlan plan(const ArmState& from, const MotionPtr& done) const = 0;
 
   /// For tasks with TaskMotionSource::simulated: simulates the task, which begins at `start` (s).

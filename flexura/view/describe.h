@@ -42,7 +42,7 @@ const Table<Quantity>& fields_of(const Quantity*);
 /// section without a limit counts as limited to a full turn.
 [[nodiscard]] Node controls_node(const ViewedRig& rig);
 /// Returns CONTROLS for a live rig. The answer includes the rig's actuators and switches, if there are any.
-/// With actuators, its key `tendons` is null.
+/// If there are actuators, the key `tendons` of the answer is null.
 [[nodiscard]] Node live_controls_node(const ViewedRig& rig);
 
 }  // namespace flexura

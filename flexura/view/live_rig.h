@@ -41,8 +41,8 @@ class LiveRig {
   void go_to(double now) { simulated_->clock().wait_until(rig_time(now)); }
   /// Moves the rig to the time `now` (s) without simulation, while no client is connected.
   void rest_until(double now) { start_ += std::max(0.0, now - this->now()); }
-  /// Must be called before the rig advances to the time `next` (s). If the arm is a rod, skips all but the
-  /// last 0.1 s before `next`, because the simulation of a rod may be too slow to catch up.
+  /// Call this function before the rig advances to the time `next` (s). If the arm is a rod, skips all but
+  /// the last 0.1 s before `next`, because the simulation of a rod may be too slow to catch up.
   void skip_to(double next);
   /// Returns the recent speed of the rig's time relative to real time, if the simulation is slower than real
   /// time. Otherwise returns std::nullopt.

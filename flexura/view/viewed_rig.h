@@ -112,8 +112,8 @@ struct ValueShot {
 [[nodiscard]] bool show_the_same(const ValueShot& a, const ValueShot& b);
 
 /// Returns the times of the instants that value_shot() needs for a frame that starts at `start` (s). For an
-/// instantaneous exposure, there is one time. Otherwise, the times are so close that the motion between them
-/// is nearly linear.
+/// instantaneous exposure, there is one time. For a longer exposure, the times are so close that the motion
+/// between them is nearly linear.
 [[nodiscard]] std::vector<double> times_of_instants(const SensorConfig& sensor, double start);
 
 }  // namespace flexura

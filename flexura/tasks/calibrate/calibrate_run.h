@@ -50,8 +50,8 @@ struct CalibrationRun {
   [[nodiscard]] const std::string& reason() const { return loop ? loop->reason : result.reason; }
 };
 
-/// Returns the image of the arm's axis that the ideal camera would observe, from base to tip, px. Empty for
-/// methods without arcs.
+/// Returns the image of the arm's axis that the ideal camera would observe, from base to tip, px. The result
+/// is empty for methods without arcs.
 [[nodiscard]] std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run,
                                                       const CameraObservation& observed);
 

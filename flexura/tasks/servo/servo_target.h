@@ -25,8 +25,8 @@ struct ServoTargetShape {
 /// Returns the length of the smooth curve through points along the arm, m.
 [[nodiscard]] double curve_length(const std::vector<std::array<double, 3>>& points);
 
-/// Returns the shapes for all targets in their order; std::nullopt for targets given by pictures. Each search
-/// starts at the previous shape.
+/// Returns the shapes for all targets in their order; std::nullopt for targets given by pictures. The search
+/// for each shape starts at the shape of the previous target.
 [[nodiscard]] std::vector<std::optional<ServoTargetShape>> servo_target_shapes(const ServoTask& task,
                                                                                const ArmModel& arm,
                                                                                ArmState from);

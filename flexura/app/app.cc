@@ -213,7 +213,7 @@ void add_check(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<CheckArguments>();
   CLI::App* check =
       add_command(app, "check", command_group::experiments,
-                  "List the limits and contacts of an experiment's motions, and the targets out of reach",
+                  "Check an experiment's motions for violated limits, contacts and unreachable targets",
                   "flexura check experiment.toml");
   add_experiment_argument(*check, arguments->experiment);
   add_set_option(*check, arguments->sets);

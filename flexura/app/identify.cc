@@ -229,10 +229,10 @@ void refuse_what_is_not_known(const IdentifyArguments& arguments, const ArmConfi
                                             *arguments.from, *arguments.to));
   if (arm.drag)
     throw input_error(arguments.experiment,
-                      "arm.drag: the identification does not support a fluid: expected none");
+                      "arm.drag: the identification does not support a fluid: expected no such table");
   if (!arm.payload.empty())
     throw input_error(arguments.experiment,
-                      "arm.payload: the identification does not support payloads: expected none");
+                      "arm.payload: the identification does not support payloads: expected no such table");
   const auto is_good = [](double value) { return value > 0 && std::isfinite(value); };
   if (arguments.noise_mm && !is_good(*arguments.noise_mm))
     throw input_error("--noise-mm", fmt::format("{}: expected a number above 0", *arguments.noise_mm));

@@ -75,8 +75,7 @@ void add_measure(CLI::App& app, Command& chosen) {
       ->allow_extra_args(false)
       ->expected(2);
   measure
-      ->add_option("--overlay", arguments->overlay,
-                   "Write the picture with the findings drawn over it (.png)")
+      ->add_option("--overlay", arguments->overlay, "Write the picture with the results drawn over it (.png)")
       ->type_name("FILE");
   measure->callback(
       [&chosen, arguments] { chosen = [arguments] { return measure_command(*arguments, std::cout); }; });
@@ -154,7 +153,7 @@ void add_intrinsics(CLI::App& app, Command& chosen) {
       ->type_name("N");
   intrinsics
       ->add_option("--hold-out", arguments->hold_out,
-                   "Exclude every Nth view from the fit and test the fit with it")
+                   "Exclude every Nth view from the fit, and test the fit with the excluded views")
       ->type_name("N");
   intrinsics->add_option("--name", arguments->names, "The camera's name; twice for a pair")
       ->type_name("NAME")

@@ -155,8 +155,8 @@ const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*) {
   static const auto table =
       Table<HeadReadingMessage>("flexura.HeadReading", "Measured pan, tilt and zoom of a camera's head.")
           .field("time", &HeadReadingMessage::time, {.meaning = "Time since the experiment's start, s."})
-          .field("pan", &HeadReadingMessage::pan, {.meaning = "Pan, rad, to the camera's left."})
-          .field("tilt", &HeadReadingMessage::tilt, {.meaning = "Tilt, rad, upwards."})
+          .field("pan", &HeadReadingMessage::pan, {.meaning = "Pan, rad; positive to the camera's left."})
+          .field("tilt", &HeadReadingMessage::tilt, {.meaning = "Tilt, rad; positive upwards."})
           .field("zoom", &HeadReadingMessage::zoom, {.meaning = "Zoom, as a ratio or as a motor position."})
           .field("moving", &HeadReadingMessage::moving, {.meaning = "Whether the device is moving."});
   return table;

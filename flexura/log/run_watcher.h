@@ -53,7 +53,7 @@ class RunWatcher {
                         const std::string& /*text*/) {}
   /// Receives a task's message as logged; LoggedMessage::as gives its type.
   virtual void logged(const LoggedMessage& /*message*/) {}
-  /// The run calls this function after a task of the rig has ended.
+  /// The run calls this function after a task that the rig performs has ended.
   virtual void task_ended() {}
 };
 

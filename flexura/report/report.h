@@ -27,7 +27,7 @@ struct Chapter {
   std::string text;                   ///< Paragraph; any text.
   std::vector<ReportFigure> figures;  ///< Figures; their names are valid file names and unique in the report.
   std::vector<std::string> points = {};    ///< List below the paragraph; any texts.
-  bool is_first_tall = true;               ///< Whether the first figure is as high as two figures.
+  bool is_first_tall = true;               ///< Whether the first figure has twice the usual height.
   std::optional<ChapterTable> table = {};  ///< Table between the paragraph and the list.
   /// A collapsed list below the list `points`. The list is shown if it has items.
   struct Details {

@@ -128,8 +128,8 @@ class TaskRunner {
   /// function when it has reached `time`.
   virtual void publish_up_to(double /*time*/, RunLog& /*log*/) {}
 
-  /// Writes the task's files into the results folder. `is_cancelled`: the run was cancelled; remaining
-  /// computations are then skipped.
+  /// Writes the task's files into the results folder. If the run was cancelled (`is_cancelled`), skips the
+  /// remaining computations.
   virtual void finish(const std::filesystem::path& /*results*/, bool /*is_cancelled*/,
                       Progress& /*progress*/) {}
 

@@ -97,7 +97,7 @@ struct CalibrateTask {
   double move_duration = RigSessionConfig{}.move_duration;  ///< Duration of a move of the arm, s.
   double pause = 0;  ///< Time to wait after each motion of the arm, until it stops swinging, s.
   double settle_timeout = RigPatience{}.settle;  ///< Time limit for motions to end, s.
-  double frame_timeout = RigPatience{}.frame;    ///< Time limit for a frame, s.
+  double frame_timeout = RigPatience{}.frame;    ///< Longest wait for a picture, s.
   std::string save;  ///< File in the experiment's folder for the calibrated rig; "": not saved.
 };
 

@@ -21,8 +21,9 @@ struct CompareArguments {
 struct ComparedValue {
   std::string measure;       ///< Position of the value in the summary: "servos.bow.remaining.rms".
   std::optional<Node> a, b;  ///< Number, text or truth value in each summary; empty if the summary lacks it.
-  std::optional<double> difference;  ///< b - a, for numbers.
-  std::optional<double> relative;    ///< (b - a) / |a|, for numbers unless a is 0.
+  std::optional<double> difference;  ///< Difference b - a, if the values are numbers.
+  std::optional<double>
+      relative;  ///< Relative difference (b - a) / |a|, if the values are numbers and a is not 0.
 
   [[nodiscard]] bool is_equal() const;
 };

@@ -32,7 +32,7 @@ struct CommandHelp {
   std::string name;
   std::string group;    ///< Heading under which `flexura --help` lists the command.
   std::string meaning;  ///< Description in one sentence.
-  std::string example;  ///< Lines that can be pasted into a shell.
+  std::string example;  ///< Example: lines that the user can paste into a shell.
   std::vector<OptionHelp> positionals;
   std::vector<OptionHelp> options;
 };

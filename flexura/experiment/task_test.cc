@@ -146,7 +146,7 @@ TEST(Tasks, BadOnesGetAClearLine) {
       {"kind='move'\nlaw=['linear','linear','linear']\nto.archings=[0,0]\n",
        "task[0].law: 3 given: expected 1 value for all sections, or 2"},
       {"kind='move'\nlaw='trapezoid'\nto.archings=[0,0]\n",
-       "task[0].max_rate: missing: the law trapezoid needs it"},
+       "task[0].max_rate: missing: the law trapezoid needs this key"},
       {"kind='move'\nlaw='trapezoid'\nmax_rate=1\nmax_acceleration=1\nduration=1\nto.archings=[0,0]\n",
        "x.toml:10:1: task[0].duration: the law trapezoid computes the duration"},
       {"kind='move'\nlaw='trapezoid'\nmax_rate=0\nmax_acceleration=1\nto.archings=[0,0]\n",

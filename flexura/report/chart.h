@@ -19,8 +19,8 @@ struct ChartSeries {
       {};  ///< Style class for colour and dash; empty: chosen by the position in the chart.
 };
 
-/// A chart of values over time or another variable. In the page, the chart is an interactive plot. As a file,
-/// it is a picture.
+/// A chart of values over time or another variable. In the page, the chart is an interactive plot. In a file
+/// of its own, the chart is a picture.
 struct LineChart {
   std::string heading;      ///< Heading, such as "bend of each section".
   std::string x_label;      ///< Name of the x axis, such as "t (s)".

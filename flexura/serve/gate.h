@@ -20,9 +20,9 @@ class Gate {
   /// port; "localhost" is accepted if this address is a loopback address. The check prevents DNS rebinding,
   /// in which a browser sends the attacker's host name.
   [[nodiscard]] bool knows_host(std::string_view host, std::string_view local) const;
-  /// Returns true if an Origin header is the origin of a page of this server. The header is compared with the
-  /// known host names, not with the Host header. The port must agree too, because browsers share cookies
-  /// between ports.
+  /// Returns true if an Origin header is the origin of a page of this server. The function compares the
+  /// Origin header with the known host names, not with the Host header. The port must agree too, because
+  /// browsers share cookies between ports.
   [[nodiscard]] bool knows_origin(std::string_view origin, std::string_view local) const;
   /// Returns true if the request has the token: "Bearer TOKEN" in its Authorization header, or a cookie of
   /// any name with the token as value.

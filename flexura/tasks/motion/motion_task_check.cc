@@ -41,9 +41,9 @@ void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const s
     reader.problem_at(path + ".law",
                       "mixes trapezoid with other laws: expected trapezoid for all sections or for none");
   }
-  if (!task.max_rate) reader.problem_at(path + ".max_rate", "missing: the law trapezoid needs it");
+  if (!task.max_rate) reader.problem_at(path + ".max_rate", "missing: the law trapezoid needs this key");
   if (!task.max_acceleration)
-    reader.problem_at(path + ".max_acceleration", "missing: the law trapezoid needs it");
+    reader.problem_at(path + ".max_acceleration", "missing: the law trapezoid needs this key");
   if (task.max_rate) check_one_or_each(task.max_rate->size(), sections, path + ".max_rate", reader);
   if (task.max_acceleration)
     check_one_or_each(task.max_acceleration->size(), sections, path + ".max_acceleration", reader);

@@ -24,7 +24,7 @@ namespace flexura {
 /// shape.
 struct ServoTargetConfig : ShapeConfig {
   double time = 0;  ///< Time from the task's start, s.
-  /// Tip position p_WT, m. Inverse kinematics computes the shape.
+  /// Tip position p_WT, m. Inverse kinematics computes a shape with this tip position.
   std::optional<std::array<double, 3>> position;
   /// Points along the whole backbone, in W, m.
   std::optional<std::vector<std::array<double, 3>>> curve;

@@ -70,7 +70,7 @@ int rehearse_command(const RehearseArguments& arguments, std::ostream& out, std:
                                  experiment_toml(experiment)));
   print_devices(experiment, arguments.video, out);
   print_line(out, "wrote", file.string());
-  print_line(out, "run this file in another terminal", fmt::format("flexura run {}", file.string()));
+  print_line(out, "run in another terminal", fmt::format("flexura run {}", file.string()));
   out << "Ctrl-C ends the rehearsal\n" << std::flush;
   for (int runs = 0; stop.come() == 0 && rehearsal->failure().empty();) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));

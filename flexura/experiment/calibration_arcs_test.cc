@@ -104,10 +104,8 @@ TEST(EtalonLoop, RefusesKeysThatCountForNothing) {
       ::testing::ElementsAre(
           "task[0].loop.turn: this key applies only to the method etalon-paper: expected no such key",
           "task[0].loop.slide: this key applies only to the method etalon-paper: expected no such key",
-          "task[0].loop.zoom_step: this key applies only to the method etalon-paper: expected it to be "
-          "absent",
-          "task[0].loop.arc: this key applies only to the methods arcs and arcs-paper: expected it to be "
-          "absent",
+          "task[0].loop.zoom_step: this key applies only to the method etalon-paper: expected no such key",
+          "task[0].loop.arc: this key applies only to the methods arcs and arcs-paper: expected no such key",
           "task[0].zooms: this key applies only to the method bundle: expected no such key"));
   const LoopRig arcs = arcs_cameras({WrongStart{}, WrongStart{}});
   const std::string count =

@@ -19,8 +19,9 @@ struct CompareArguments {
 
 /// A value of the summaries of two runs.
 struct ComparedValue {
-  std::string measure;       ///< Position of the value in the summary: "servos.bow.remaining.rms".
-  std::optional<Node> a, b;  ///< Number, text or truth value in each summary; empty if the summary lacks it.
+  std::string measure;  ///< Position of the value in the summary: "servos.bow.remaining.rms".
+  std::optional<Node> a,
+      b;  ///< Number, text or truth value in each summary; empty if the summary lacks the value.
   std::optional<double> difference;  ///< Difference b - a, if the values are numbers.
   std::optional<double>
       relative;  ///< Relative difference (b - a) / |a|, if the values are numbers and a is not 0.

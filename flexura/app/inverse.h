@@ -12,8 +12,8 @@ namespace flexura {
 /// or "rotation":[w,x,y,z], or an object {"curve":[[x,y,z],...]}. Both forms may have "prefer", "start" and
 /// "all" (docs/command-line.md). The answer is one line of JSON without its line end:
 /// {"converged":..,"reason":..,"bends":[[bx,by],...],"stretches":[..],"position_error":..,"angle_error":..}.
-/// For a planar arm the answer has "archings" instead of "bends". If the search did not converge, it also has
-/// "nearest" and "distance"; with "all" it also has "solutions". The answer to an invalid line is
+/// For a planar arm the answer has "archings" instead of "bends". If the search did not converge, the answer
+/// also has "nearest" and "distance"; with "all" it also has "solutions". The answer to an invalid line is
 /// {"error":"..."}. No line makes this function throw an exception.
 [[nodiscard]] std::string answer_inverse(const ArmModel& arm, std::string_view line);
 /// Answers one line of `flexura ik` for an arm of arcs.

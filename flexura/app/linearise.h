@@ -22,9 +22,10 @@ class LineariseAnswers {
   LineariseAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
   /// Returns one line of JSON without its line end: {"converged":..,"reason":..}. If an equilibrium was
-  /// found, it also has "stable":..,"tip":.., the names of "states", "inputs" and "outputs", the matrices
-  /// "A", "B" and "C" by rows, "eigenvalues":[[real,imaginary],..], "frequencies_hz" and "damping_ratios".
-  /// The answer to an invalid line is {"error":"..."}. No line makes this function throw an exception.
+  /// found, the answer also has "stable":..,"tip":.., the names of "states", "inputs" and "outputs", the
+  /// matrices "A", "B" and "C" by rows, "eigenvalues":[[real,imaginary],..], "frequencies_hz" and
+  /// "damping_ratios". The answer to an invalid line is {"error":"..."}. No line makes this function throw an
+  /// exception.
   [[nodiscard]] std::string answer(std::string_view line);
 
  private:

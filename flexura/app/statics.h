@@ -23,7 +23,7 @@ class StaticsAnswers {
   StaticsAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
   /// Returns one line of JSON without its line end: {"converged":..,"reason":..}. If an equilibrium was
-  /// found, it also has
+  /// found, the answer also has
   /// "tip":{"position":[..],"rotation":[w,x,y,z]},"tensions":[..],"displacements":[..],"strain_energy":..,
   /// "stable":..,"snapped":..,"ambiguous":.. and, if requested, "at":[poses]. For a target, the tensions have
   /// the least effort among those that reach the target or come nearest to it. The answer for a target also

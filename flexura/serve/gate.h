@@ -29,9 +29,10 @@ class Gate {
   [[nodiscard]] bool has_token(const RequestHead& head) const;
   /// Returns true if the request's Authorization header has the token.
   [[nodiscard]] bool has_bearer(const RequestHead& head) const;
-  /// Returns the cookie with the token for a page that uses `host` for this server. Scripts cannot read it,
-  /// and pages of other hosts do not send it. The cookie's name includes the port of `host`: browsers share
-  /// cookies between ports, so two programs on a host need different names.
+  /// Returns the cookie with the token for a page that uses `host` for this server. Scripts cannot read this
+  /// cookie, and browsers do not send it with requests from pages of other hosts. The cookie's name includes
+  /// the port of `host`: browsers share cookies between ports, so two programs on a host need different
+  /// names.
   [[nodiscard]] std::string cookie(std::string_view host) const;
   [[nodiscard]] const std::string& token() const { return token_; }
 

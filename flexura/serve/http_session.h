@@ -46,7 +46,7 @@ class HttpSession {
   void feed(std::string_view bytes);
   /// Returns the next action: Returns the next action, which is ReadMore until a request is complete. The
   /// caller must call format() after a Question, and refuse() after an Upgrade that fails. After an Answer
-  /// with `last`, it must not call any more functions.
+  /// with `last`, the caller must not call any more functions.
   Step next();
   /// Returns the HTTP response with the host's answer to the last Question.
   [[nodiscard]] Answer format(HttpAnswer host) const;

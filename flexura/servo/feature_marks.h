@@ -25,7 +25,7 @@ struct FeatureMark {
 /// - `chords`, `potential`: chords. A target chord is drawn as the measured chord, rotated about its middle,
 ///   because the law compares only directions.
 /// - `moments`: the centroid and the ellipse with the second moments.
-/// - `shape`: nothing, because it compares no images.
+/// - `shape`: nothing, because this law compares no images.
 class FeatureMarker {
  public:
   FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points);

@@ -38,9 +38,9 @@ class ShapeObserver {
   [[nodiscard]] ShapeEstimate with_nominal_views(const ServoObservation& observed,
                                                  const std::array<View, 2>& views) const;
 
-  /// Returns the first observation with a shape; null before it.
+  /// Returns the first observation with a shape; null before there is one.
   [[nodiscard]] const std::shared_ptr<const ServoObservation>& first() const { return first_; }
-  /// Returns the newest observation with a shape; null before the first.
+  /// Returns the newest observation with a shape; null before there is one.
   [[nodiscard]] const std::shared_ptr<const ServoObservation>& last() const { return last_; }
   /// Returns the time since the last observation with a shape, s.
   [[nodiscard]] double blind_for(double now) const { return now - seen_since_; }

@@ -7,8 +7,8 @@
 
 namespace flexura {
 
-/// Returns the JSON Schema (draft 7) of a document described by `info`. Editors use it to complete and check
-/// files. A quantity has one property per unit suffix, each with the range in the suffix's unit.
+/// Returns the JSON Schema (draft 7) of a document described by `info`. Editors use the schema to complete
+/// and check files. A quantity has one property per unit suffix, each with the range in the suffix's unit.
 [[nodiscard]] Node json_schema(const TableInfo& info);
 
 /// Returns a Markdown reference of the document: one section per table, one row per field. If a table occurs

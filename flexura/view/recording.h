@@ -19,8 +19,8 @@
 
 namespace flexura {
 
-/// Results of a run, prepared for viewing: the content of the log by time. Immutable, so that threads can
-/// share it. For a run that was killed, a Recording has the log up to the last complete chunk.
+/// Results of a run, prepared for viewing: the content of the log by time. A Recording is immutable, so that
+/// threads can share it. For a run that was killed, a Recording has the log up to the last complete chunk.
 class Recording {
  public:
   /// Opens a results folder of `flexura run`. Throws InputError if the folder is not a results folder, or if

@@ -79,7 +79,8 @@ struct StateMessage {
   std::vector<ActuatorSample> actuators;
   std::optional<RodEnergy> energy;  ///< Energies of an arm with inertia.
   std::optional<PushSample> push;
-  std::optional<double> pace;  ///< Speed of the simulation relative to real time; missing if it keeps up.
+  std::optional<double>
+      pace;  ///< Speed of the simulation relative to real time; missing if the simulation runs in real time.
   std::vector<ContactSample> contacts;
 };
 

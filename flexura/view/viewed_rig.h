@@ -42,7 +42,7 @@ struct PushScale {
                     ///< arm's length.
 };
 
-/// A rig of an experiment, prepared for viewing. Immutable, so that threads can share it.
+/// A rig of an experiment, prepared for viewing. A ViewedRig is immutable, so that threads can share it.
 class ViewedRig {
  public:
   explicit ViewedRig(Experiment read);

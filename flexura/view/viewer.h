@@ -19,7 +19,7 @@ namespace flexura {
 
 /// An experiment that a viewer offers to open.
 struct ViewExample {
-  std::string name;                    ///< Name that clients use to request it.
+  std::string name;                    ///< Name by which clients request the example.
   std::string title;                   ///< Title for users.
   std::function<ViewedRigPtr()> load;  ///< Loads the example's rig; never returns null.
   std::filesystem::path results;       ///< Folder for the results of runs of this experiment.

@@ -104,8 +104,8 @@ struct ServoSettings {
       20;
   double hold_after = 0.3;   ///< Time without an observation after which the arm stops and waits, s.
   double give_up_after = 3;  ///< Time without an observation after which the servo fails, s.
-  /// The servo stops the arm if its shape changes by more than this value without a motion of the drives that
-  /// explains the change: root mean square along the arm, share of its length (DisturbanceWatch). Default:
+  /// Change of the arm's shape, not explained by the drives' motion, above which the servo stops the arm. RMS
+  /// along the arm, as a share of its length (DisturbanceWatch). Default:
   /// 0.05 for an arm with a dynamic model and the Jacobian
   /// `model`; otherwise such changes are not detected.
   std::optional<double> disturbance = {};

@@ -70,7 +70,7 @@ void add_new(CLI::App& app, Command& chosen) {
 void add_view(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<ViewArguments>();
   CLI::App* view = add_command(app, "view", command_group::experiments,
-                               "Show a rig or a run in the browser, and move the rig by hand",
+                               "Show a rig or a run in the browser, and move the simulated rig interactively",
                                "flexura view experiment.toml\nflexura view results/experiment");
   view->add_option("WHAT", arguments->what,
                    "An experiment file, or a folder made by `flexura run` (default: the paper's arm)")
@@ -102,15 +102,15 @@ void add_run(CLI::App& app, Command& chosen) {
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1000000000000000}).description(""));
   run->add_flag("--json", arguments->json, "Print the summary as one JSON document");
   CLI::Option* dry = run->add_flag("--dry-run", arguments->dry_run,
-                                   "Print what would be sent to the equipment of [rig], and send nothing");
-  run->add_flag("--queries", arguments->queries, "With --dry-run: print questions to the devices too")
+                                   "Print what a run would send to the equipment of [rig], but send nothing");
+  run->add_flag("--queries", arguments->queries, "With --dry-run: also print the queries of device states")
       ->needs(dry);
   auto viewer = std::make_shared<ViewerArguments>();
   auto is_viewed = std::make_shared<bool>(false);
   CLI::Option* view = run->add_flag("--view", *is_viewed, "Watch the run in the browser");
   add_viewer_options(*run, *viewer);
   run->add_option("--speed", arguments->speed,
-                  "Speed of the watched run relative to real time, 0: as fast as possible (default: 1)")
+                  "Speed of the watched run relative to real time; 0 means as fast as possible (default: 1)")
       ->type_name("N")
       ->check(CLI::Range(0.0, 1000.0).description(""));
   for (const char* option : {"--port", "--no-browser", "--address", "--name", "--speed"})
@@ -155,7 +155,7 @@ void add_devices(CLI::App& app, Command& chosen) {
 void add_jog(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<JogArguments>();
   CLI::App* jog = add_command(app, "jog", command_group::equipment,
-                              "Move one axis of the equipment by hand, within limits",
+                              "Move one axis of the equipment by a distance, within limits",
                               "flexura jog laboratory.toml motor.2 100\n"
                               "flexura jog laboratory.toml tendon.2 0.5mm\n"
                               "flexura jog laboratory.toml section.1.x -5deg\n"
@@ -173,7 +173,7 @@ void add_jog(CLI::App& app, Command& chosen) {
       ->type_name("")
       ->required();
   jog->add_flag("--here", arguments->here,
-                "Home nothing: the arm has its initial shape now (default: as rig.start says)");
+                "Do no homing, because the arm has its initial shape now (default: rig.start decides)");
   add_set_option(*jog, arguments->sets);
   jog->add_flag("--json", arguments->json, "Print one JSON document");
   jog->callback([&chosen, arguments] {
@@ -185,7 +185,7 @@ void add_rehearse(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<RehearseArguments>();
   CLI::App* rehearse = add_command(
       app, "rehearse", command_group::experiments,
-      "Simulate an experiment's equipment: its motors, heads and cameras behind their protocols",
+      "Simulate an experiment's equipment: motors, heads and cameras that speak the real devices' protocols",
       "flexura rehearse experiment.toml\nflexura run experiment-rehearsal.toml    (in another terminal)");
   add_experiment_argument(*rehearse, arguments->experiment);
   rehearse
@@ -199,7 +199,8 @@ void add_rehearse(CLI::App& app, Command& chosen) {
       ->type_name("N")
       ->check(CLI::Range(1, 100).description(""));
   rehearse
-      ->add_option("--port", arguments->server.port, "Port of the cameras' videos (default: any free port)")
+      ->add_option("--port", arguments->server.port,
+                   "Network port of the cameras' videos (default: any free port)")
       ->type_name("N")
       ->check(CLI::Range(std::uint16_t{0}, std::uint16_t{65535}).description(""));
   add_set_option(*rehearse, arguments->sets);
@@ -212,7 +213,7 @@ void add_check(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<CheckArguments>();
   CLI::App* check =
       add_command(app, "check", command_group::experiments,
-                  "List the limits and contacts of an experiment's motions, and the targets out of reach",
+                  "Check an experiment's motions for violated limits, contacts and unreachable targets",
                   "flexura check experiment.toml");
   add_experiment_argument(*check, arguments->experiment);
   add_set_option(*check, arguments->sets);

@@ -6,8 +6,8 @@
 namespace flexura {
 
 /// Opens a URL in the user's browser if there is a display. The browser opens a temporary file that redirects
-/// to the URL, because other users can read a program's arguments. Only this user can read the file. The
-/// destructor deletes it.
+/// to the URL, because other users can read a program's arguments. Only the user who runs the program can
+/// read this file. The destructor deletes it.
 class BrowserPage {
  public:
   explicit BrowserPage(const std::string& url);

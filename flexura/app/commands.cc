@@ -248,7 +248,8 @@ int export_command(const ExportArguments& arguments, std::ostream& out, std::ost
     throw input_error("--to", fmt::format("\"{}\": expected csv, mp4, png or gltf", format));
   const bool is_gltf = format == "gltf";
   if (!is_gltf && !arguments.out.empty())
-    throw input_error("--out", fmt::format("--to {} writes a folder: expected --to gltf", format));
+    throw input_error("--out",
+                      fmt::format("--to {} writes a folder, not one file: expected --to gltf", format));
   TerminalProgress progress(err);
   std::filesystem::path written;
   std::vector<std::string> notes;

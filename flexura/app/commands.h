@@ -22,8 +22,9 @@ struct RunArguments {
   std::vector<std::string> sets;
   std::optional<std::int64_t> seed;
   bool json = false;
-  bool dry_run = false;                   ///< Print what would be sent to the equipment (dry_run.h).
-  bool queries = false;                   ///< With `dry_run`: print questions to the devices too.
+  bool dry_run =
+      false;  ///< Whether to print what the run would send to the equipment, instead of running (dry_run.h).
+  bool queries = false;  ///< With `dry_run`: whether to print also the queries of device states.
   std::optional<ViewerArguments> viewer;  ///< If set, a viewer shows the run and stays open afterwards.
   double speed = 1;  ///< Speed of a run with a viewer, relative to real time; 0: as fast as possible.
 };

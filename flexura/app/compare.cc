@@ -176,7 +176,7 @@ void write_page(const CompareArguments& arguments, const Node& a, const Node& b,
                       .notes = {fmt::format("{} values are equal.", equal)},
                       .table = std::move(table),
                       .figures = comparison_figures(arguments.a, arguments.b, progress)};
-  if (data.figures.empty()) data.notes.emplace_back("Both logs have no states.");
+  if (data.figures.empty()) data.notes.emplace_back("Neither log contains states.");
   progress.clear();
   write_new_file(arguments.out, comparison_html(data));
 }

@@ -19,17 +19,19 @@ struct CompareArguments {
 
 /// A value of the summaries of two runs.
 struct ComparedValue {
-  std::string measure;       ///< Position of the value in the summary: "servos.bow.remaining.rms".
-  std::optional<Node> a, b;  ///< Number, text or truth value in each summary; empty if the summary lacks it.
-  std::optional<double> difference;  ///< b - a, for numbers.
-  std::optional<double> relative;    ///< (b - a) / |a|, for numbers unless a is 0.
+  std::string measure;  ///< Position of the value in the summary: "servos.bow.remaining.rms".
+  std::optional<Node> a,
+      b;  ///< Number, text or truth value in each summary; empty if the summary lacks the value.
+  std::optional<double> difference;  ///< Difference b - a, if the values are numbers.
+  std::optional<double>
+      relative;  ///< Relative difference (b - a) / |a|, if the values are numbers and a is not 0.
 
   [[nodiscard]] bool is_equal() const;
 };
 
 /// Returns pairs of values of two summaries, in the order of the first summary. Values that only the second
-/// summary has follow. Items of a list of tables are matched by their `name` (or `task`). Lists of tables
-/// without such a key are omitted.
+/// summary has follow. Items of a list of tables are matched by their key `name` (or `task`). Lists of tables
+/// without these keys are omitted.
 [[nodiscard]] std::vector<ComparedValue> compared_values(const Node& a, const Node& b);
 
 /// Prints the values that differ between the summaries of two results folders, as a table or JSON. If `out`

@@ -93,7 +93,7 @@ int list_found(const DevicesArguments& arguments, std::ostream& out) {
         << '\n';
     return exit_done;
   }
-  if (found.empty()) out << "no serial line of USB, video device, network camera or CAN interface is found\n";
+  if (found.empty()) out << "no USB serial line, video device, network camera or CAN interface was found\n";
   TextTable table;
   for (const FoundDevice& one : found) table.add({one.place, one.kind, one.about});
   table.print(out);
@@ -120,7 +120,7 @@ int check_devices(const DevicesArguments& arguments, std::ostream& out, std::ost
   const Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, {}});
   if (!experiment.equipment)
     throw input_error(arguments.experiment,
-                      "no devices: the rig of this file is simulated: expected a table [rig]", 1, 1);
+                      "this file has no devices, because its rig is simulated: expected a table [rig]", 1, 1);
   const std::vector<DeviceReport> reports = report_devices(experiment);
   const auto failed =
       std::ranges::count_if(reports, [](const DeviceReport& report) { return !report.problem.empty(); });
@@ -150,7 +150,8 @@ int devices_command(const DevicesArguments& arguments, std::ostream& out, std::o
     if (probe == "all") continue;
     try {
       if (parse_link_address(probe).kind == LinkAddress::Kind::can)
-        throw std::invalid_argument("a CAN bus cannot be probed: give its drives in a file");
+        throw std::invalid_argument(
+            "a CAN bus cannot be probed: write its drives into the table [rig] of a file");
     } catch (const std::invalid_argument& error) {
       throw input_error("--probe", error.what());
     }

@@ -8,8 +8,8 @@ namespace flexura {
 
 /// Arguments of `flexura devices`.
 struct DevicesArguments {
-  std::string experiment;           ///< Whose devices are connected to; "": list what this machine has.
-  std::vector<std::string> probes;  ///< Links that are asked what is there; "all": every serial line found.
+  std::string experiment;  ///< File with the devices to connect to; "": list the devices of this machine.
+  std::vector<std::string> probes;  ///< Links at which to ask for a device; "all": every serial line found.
   std::vector<std::string> sets;
   bool json = false;
 };

@@ -70,7 +70,8 @@ std::vector<std::string> notes_on(const Experiment& experiment) {
   std::vector<std::string> notes = dry_assumptions(experiment);
   if (std::ranges::any_of(experiment.task, uses_pictures))
     notes.emplace_back(
-        "tasks that look at pictures see those of the simulated rig, so their commands are an example");
+        "tasks that need pictures use pictures of the simulated rig, so the commands of these tasks are an "
+        "example");
   return notes;
 }
 
@@ -134,7 +135,7 @@ int dry_run_command(const RunArguments& arguments, std::ostream& out, std::ostre
   experiment.record.cameras = experiment.record.report = experiment.record.scene = false;
   const std::vector<std::string> notes = notes_on(experiment);
   if (!arguments.json) {
-    print_line(out, "dry run", "nothing is sent; simulated devices answer");
+    print_line(out, "dry run", "no command is sent to real devices; simulated devices answer");
     for (const std::string& note : notes) print_line(out, "note", note);
   }
   DryProgress progress;
@@ -158,7 +159,7 @@ int dry_run_command(const RunArguments& arguments, std::ostream& out, std::ostre
   } else {
     print_line(out, "dry run",
                fmt::format("{} commands, {} questions{}", listing.commands(), listing.questions(),
-                           arguments.queries ? "" : " (not listed: --queries lists them)"));
+                           arguments.queries ? "" : " (not listed; --queries lists them)"));
     print_line(out, "outcome", result.headline);
   }
   if (result.outcome == RunOutcome::cancelled) return exit_of_signal(progress.signal());

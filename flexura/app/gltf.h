@@ -25,15 +25,15 @@ struct GltfMesh {
   std::vector<std::uint32_t> triangles;
 };
 
-/// A mesh and its material. A node shows one or more parts.
+/// A part of a node: a mesh and its material. A node shows one or more parts.
 struct GltfPart {
   GltfMesh mesh;
   std::size_t material = 0;
 };
 
 /// A glTF 2.0 document with one scene, one skin at most and one animation at most (Khronos Group, "glTF 2.0
-/// Specification"). Each added element gets the next number of its kind, from 0. The axes are those of the
-/// world, with Y up, in metres. Equal calls produce equal bytes.
+/// Specification"). Functions that add an element return its index among the elements of its kind, from 0.
+/// The axes are those of the world, with Y up, in metres. Equal calls produce equal bytes.
 class GltfDocument {
  public:
   /// Motion of a node: its poses at the animation's times, in the axes of its parent. Between these times,
@@ -55,7 +55,7 @@ class GltfDocument {
   /// Adds a node at a pose in the scene. `content` has the node's mesh, camera, children or skin as members
   /// such as {"mesh": 0}. It may be empty.
   std::size_t add_node(const std::string& name, const Pose& pose, const Node::Table& content = {});
-  /// Makes the node `child` a child of the node `parent`. The child's pose is then in the parent's axes.
+  /// Makes the node `child` a child of the node `parent`. The pose of the child is relative to the parent.
   void set_parent(std::size_t child, std::size_t parent);
   /// Adds a skin whose joints are these nodes. `rest` has the world pose of each joint for the undeformed
   /// mesh.

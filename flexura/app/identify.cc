@@ -187,12 +187,13 @@ std::string unphysical_note(const IdentifiedValue& value, const IdentifiedArm& f
   const bool can_be_zero = value.name == "damping_time" || value.name == "friction";
   const std::string of = value.section ? fmt::format("section {}: ", *value.section) : "";
   // Within two standard deviations of the range the value says only that it is small.
-  const std::string why = value.value + 2 * value.sigma > 0
-                              ? "the motion hardly excites it, or the value is too small to be observed"
-                              : fmt::format(
-                                    "the sampling interval ({:.3g} ms) is too long, or the file's arm "
-                                    "differs from the true arm in other values too",
-                                    1e3 * found.step);
+  const std::string why =
+      value.value + 2 * value.sigma > 0
+          ? "the motion hardly excites this parameter, or its value is too small to be observed"
+          : fmt::format(
+                "the sampling interval ({:.3g} ms) is too long, or the file's arm "
+                "differs from the true arm in other values too",
+                1e3 * found.step);
   return fmt::format("note: {}{} = {:.4g} +- {:.2g} is outside its physical range ({}): {}\n", of,
                      words_of(value.name), value.value, value.sigma, can_be_zero ? "0 or more" : "above 0",
                      why);
@@ -228,10 +229,10 @@ void refuse_what_is_not_known(const IdentifyArguments& arguments, const ArmConfi
                                             *arguments.from, *arguments.to));
   if (arm.drag)
     throw input_error(arguments.experiment,
-                      "arm.drag: the identification does not support a fluid: expected none");
+                      "arm.drag: the identification does not support a fluid: expected no such table");
   if (!arm.payload.empty())
     throw input_error(arguments.experiment,
-                      "arm.payload: the identification does not support payloads: expected none");
+                      "arm.payload: the identification does not support payloads: expected no such table");
   const auto is_good = [](double value) { return value > 0 && std::isfinite(value); };
   if (arguments.noise_mm && !is_good(*arguments.noise_mm))
     throw input_error("--noise-mm", fmt::format("{}: expected a number above 0", *arguments.noise_mm));

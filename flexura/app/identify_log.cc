@@ -52,9 +52,10 @@ Logged read_messages(const McapReader& log, const std::string& name, const TimeS
     } else if (topic == arm_contacts_topic) {
       const auto touching = read_as<ContactsMessage>(parse_json(message.text(), name));
       if (!touching.contacts.empty())
-        throw input_error(name, fmt::format("the arm touches {} at {} s, and the contact force is unknown: "
-                                            "expected a part of the motion without contact (--from, --to)",
-                                            touching.contacts[0].with, time));
+        throw input_error(
+            name, fmt::format("the arm touches {} at {} s, but the identification does not support contact: "
+                              "expected a part of the motion without contact (--from, --to)",
+                              touching.contacts[0].with, time));
     }
   }
   return logged;
@@ -92,7 +93,7 @@ MeasuredMotion motion_of(const Logged& logged, const std::string& name, const Ex
     for (std::size_t i = 0; i < poses; i += 2) sample.positions.push_back(X_BW * position_of(truth.poses[i]));
     if (!(sample.positions[0].norm() <= same_base * rod.length()))
       throw input_error(name,
-                        fmt::format("has an arm with its base {:.3g} m from the base of the experiment's arm",
+                        fmt::format("has an arm whose base is {:.3g} m from the base of the experiment's arm",
                                     sample.positions[0].norm()));
     motion.samples.push_back(std::move(sample));
   }

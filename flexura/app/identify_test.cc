@@ -206,7 +206,7 @@ TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
       HasSubstr("has a true arm of 48 arcs at 0 s: expected 24"));
   EXPECT_THAT(
       refused({.experiment = step_response, .motion = results(), .sets = {"arm.base.position=[0, 0, 0]"}}),
-      HasSubstr("has an arm with its base 0.8 m from the base of the experiment's arm"));
+      HasSubstr("has an arm whose base is 0.8 m from the base of the experiment's arm"));
   EXPECT_THAT(
       refused({.experiment = step_response, .motion = results(), .sets = {"arm.section.0.length=0.3"}}),
       HasSubstr("no shape of the rod is near the measured places"));

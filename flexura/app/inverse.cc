@@ -83,7 +83,7 @@ void check_target(const InverseRequest& request, Reader& reader) {
   }
   if (request.tolerance && !request.curve) reader.problem_at("tolerance", "is for a curve");
   if (request.direction && request.rotation) {
-    reader.problem("gives the orientation twice: expected direction or rotation, not both");
+    reader.problem("gives the orientation twice: expected either direction or rotation");
   }
   if (request.direction && vector(*request.direction).isZero(0.0)) {
     reader.problem_at("direction", "is zero: expected a direction");

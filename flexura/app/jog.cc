@@ -48,7 +48,7 @@ bool wait_for_rest(ClockPort& clock, const StopSignal& stop, double longest, con
     }
     if (clock.now() > end) {
       halt();
-      throw std::runtime_error(fmt::format("it still moves after {:.0f} s and was stopped", longest));
+      throw std::runtime_error(fmt::format("the axis still moved after {:.0f} s and was stopped", longest));
     }
     clock.wait_until(clock.now() + between_looks);
   }
@@ -207,7 +207,7 @@ int jog_command(const JogArguments& arguments, std::ostream& out, std::ostream& 
   Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, {}});
   if (!experiment.equipment)
     throw input_error(arguments.experiment,
-                      "no devices: the rig of this file is simulated: expected a table [rig]", 1, 1);
+                      "this file has no devices, because its rig is simulated: expected a table [rig]", 1, 1);
   if (arguments.here) experiment.equipment->start = StartPositions::declared;
   const JogAxis axis = jog_axis(experiment, arguments.axis);
   const double distance = jog_distance(axis, arguments.distance);
@@ -230,16 +230,15 @@ int jog_command(const JogArguments& arguments, std::ostream& out, std::ostream& 
   const auto shown = [&](double value) { return fmt::format("{:.6g}", value / axis.scale()); };
   const std::string unit = axis.unit().empty() ? "" : fmt::format(" {}", axis.unit());
   if (!arguments.json)
-    out << fmt::format("{}: from {} to {}{}; it reads {}\n", axis.name, shown(result.from), shown(result.to),
-                       unit, shown(result.reads));
+    out << fmt::format("{}: commanded from {} to {}{}; measured position {}\n", axis.name, shown(result.from),
+                       shown(result.to), unit, shown(result.reads));
   if (result.is_stopped) {
-    print_line(err, "stopped", "the axis was halted on its way");
+    print_line(err, "stopped", "the axis was halted before it reached its target");
     return exit_of_signal(stop.come());
   }
   if (std::abs(result.reads - result.to) > result.tolerance)
-    throw std::runtime_error(
-        fmt::format("{} stands at {}{} instead of {}: check the limits of its controller", axis.name,
-                    shown(result.reads), unit, shown(result.to)));
+    throw std::runtime_error(fmt::format("{} is at {}{} instead of {}: check the limits of its controller",
+                                         axis.name, shown(result.reads), unit, shown(result.to)));
   return exit_done;
 }
 

@@ -15,16 +15,18 @@ struct JogAxis {
   enum class Kind { motor, tendon, section, pan, tilt, zoom };
   Kind kind = Kind::motor;
   std::size_t index = 0;  ///< Motor, tendon or section, from 0; of a camera, its index in Setup::cameras().
-  int component = 0;      ///< Of a section's bend: 0 towards x, 1 towards y.
-  std::string name;       ///< As the user gave it.
+  int component = 0;      ///< For a section: direction of the bend, 0 towards x, 1 towards y.
+  std::string name;       ///< Name of the axis as the user gave it.
 
-  /// Returns whether it is an axis of a camera's head.
+  /// Returns whether this is an axis of a camera's head.
   [[nodiscard]] bool is_of_camera() const {
     return kind == Kind::pan || kind == Kind::tilt || kind == Kind::zoom;
   }
-  /// Returns the unit of its distances in the user's text: "microsteps", "mm", "deg", or "" for a zoom.
+  /// Returns the unit of distances of this axis in the user's text: "microsteps", "mm", "deg", or "" for a
+  /// zoom.
   [[nodiscard]] std::string_view unit() const;
-  /// Returns the factor from this unit to the unit of the program: microsteps, m, rad, or zoom positions.
+  /// Returns the factor from the unit in the user's text to the program's unit: microsteps, m, rad, or zoom
+  /// positions.
   [[nodiscard]] double scale() const;
 };
 
@@ -39,14 +41,14 @@ struct JogAxis {
 
 /// How the arm moves in a jog.
 struct ArmJog {
-  std::vector<double> pulled;  ///< Displacement of each tendon at the end, m.
+  std::vector<double> pulled;  ///< Displacement of each tendon at the end of the jog, m.
   ArmState from, to;           ///< Shapes of the model.
   double duration = 0;         ///< s
 };
 /// Returns the jog of a motor, a tendon or a section by `distance` (jog_distance) from the arm's initial
-/// shape, as slow as the limits of the file need. Adds to `refusals` why it would harm the robot, one line
-/// each. Reasons are what the safety check finds, a tendon that pulls too far against the others, and
-/// positions beyond the limits of the motors' controllers.
+/// shape, slow enough for the limits in the file. Adds to `refusals` each reason why the jog could harm the
+/// robot, one line each. Reasons are findings of the safety check, a tendon that pulls too far against the
+/// others, and positions beyond the limits of the motors' controllers.
 [[nodiscard]] ArmJog plan_arm_jog(const Experiment& experiment, const JogAxis& axis, double distance,
                                   std::vector<std::string>& refusals);
 

@@ -45,7 +45,7 @@ TEST_F(LaboratoryProgram, JogMovesOneMotorByWhatIsAsked) {
   std::ofstream(path("lab.toml")) << lab_file(controller.path, 1);
   const Ended ended = run("jog lab.toml motor.2 -150");
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_EQ(ended.out, "motor.2: from 0 to -150 microsteps; it reads -150\n");
+  EXPECT_EQ(ended.out, "motor.2: commanded from 0 to -150 microsteps; measured position -150\n");
   EXPECT_EQ(controller.positions(), (std::vector<double>{0, -150, 0}));
   const Ended again = run("jog lab.toml tendon.3 0.2mm --json");
   EXPECT_EQ(again.status, 0) << again.err;
@@ -136,7 +136,8 @@ TEST_F(LaboratoryProgram, DryRunPrintsEveryCommandAndNeedsNoDevice) {
                                               "visca.bus.link = \"/dev/none@9600\"\n");
   const Ended ended = run("run lab.toml --dry-run");
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.out, StartsWith("dry run: nothing is sent; simulated devices answer\n"));
+  EXPECT_THAT(ended.out,
+              StartsWith("dry run: no command is sent to real devices; simulated devices answer\n"));
   EXPECT_THAT(ended.out, HasSubstr(" s  /dev/no-such-line  0x18 (reset)\n"));
   EXPECT_THAT(ended.out, HasSubstr("$J=G90G21G53X"));
   EXPECT_THAT(ended.out, HasSubstr("stop pan and tilt\n"));

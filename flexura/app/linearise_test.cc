@@ -237,7 +237,7 @@ TEST(Linearise, AnswersABadLineWithItsError) {
       {R"({"tensions":[0,-1]})", "tensions[1] = -1: expected a number from 0 to"},
       {R"({"displacements":[0]})", "displacements: 1 given: expected 2"},
       {R"({"tensions":[0,0],"displacements":[0,0]})",
-       "displacements: are given together with tensions: expected one of them"},
+       "displacements: are given together with tensions: expected either displacements or tensions"},
       {R"({"tip_force":[1,2]})", "tip_force is an array of 2: expected an array of 3"},
       {R"({"gravity":[1,2,-1e300]})", "gravity[2] = -1e+300: expected a number from"},
       {R"({"at":[0.1]})", "at"},

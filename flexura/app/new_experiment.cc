@@ -49,7 +49,7 @@ std::string for_file(std::string text, const std::string& file) {
 const std::vector<ExperimentTemplate>& experiment_templates() {
   static const std::vector<ExperimentTemplate> templates{
       {"arm", "an arm of two sections and two motions", embedded::arm_toml},
-      {"cameras", "the arm in view of two cameras", embedded::cameras_toml},
+      {"cameras", "the arm, seen by two cameras", embedded::cameras_toml},
       {"servo", "two cameras control the shape of the arm", embedded::servo_toml},
       {"calibration", "two cameras are calibrated with the arm", embedded::calibration_toml},
       {"tendons", "an elastic arm bent by tendons", embedded::tendons_toml},
@@ -68,7 +68,7 @@ int new_command(const NewArguments& arguments, std::ostream& out) {
   }
   const std::string file = arguments.file.empty() ? fmt::format("{}.toml", chosen->kind) : arguments.file;
   if (!is_missing(file))
-    throw input_error(file, "the file exists and is kept: expected the name of a new file");
+    throw input_error(file, "the file exists, and is not overwritten: expected the name of a new file");
   write_new_file(file, for_file(std::string(chosen->text), file));
   print_line(out, "wrote", fmt::format("{} ({})", file, chosen->meaning));
   print_line(out, "see it", "flexura view " + shell_word(file));

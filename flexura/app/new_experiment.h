@@ -12,7 +12,7 @@ struct ExperimentTemplate {
   std::string_view kind;     ///< Name of the kind for `flexura new`.
   std::string_view meaning;  ///< Description in one line, for the help.
   std::string_view
-      text;  ///< Contents of the file; FILE in its comments is a placeholder for the file's name.
+      text;  ///< Contents of the file; FILE in the comments of the text is a placeholder for the file's name.
 };
 
 /// Returns all templates, the simplest first.
@@ -21,7 +21,7 @@ struct ExperimentTemplate {
 /// The arguments of `flexura new`.
 struct NewArguments {
   std::string kind = "arm";
-  std::string file;  ///< File to write; "": the kind's name with ".toml" in the working folder.
+  std::string file;  ///< File to write; "": KIND.toml in the working folder, where KIND is the kind's name.
 };
 
 /// Writes the template and prints commands that use it. Throws InputError if the file exists.

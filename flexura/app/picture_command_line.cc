@@ -62,9 +62,7 @@ void add_measure(CLI::App& app, Command& chosen) {
       ->add_option("--camera", arguments->camera,
                    "File of calibrated cameras (TOML): one camera for all pictures, or one per picture")
       ->type_name("FILE");
-  measure
-      ->add_option("--radius", arguments->radius,
-                   "Radius of the arm, m: makes it possible to estimate depths")
+  measure->add_option("--radius", arguments->radius, "Radius of the arm, m; needed to estimate depths")
       ->type_name("R");
   measure
       ->add_option("--gamma", arguments->gamma,
@@ -77,8 +75,7 @@ void add_measure(CLI::App& app, Command& chosen) {
       ->allow_extra_args(false)
       ->expected(2);
   measure
-      ->add_option("--overlay", arguments->overlay,
-                   "Write the picture with the findings drawn over it (.png)")
+      ->add_option("--overlay", arguments->overlay, "Write the picture with the results drawn over it (.png)")
       ->type_name("FILE");
   measure->callback(
       [&chosen, arguments] { chosen = [arguments] { return measure_command(*arguments, std::cout); }; });
@@ -90,7 +87,7 @@ void add_estimate(CLI::App& app, Command& chosen) {
       add_command(app, "estimate", command_group::pictures,
                   "Estimate the arm's shape from pictures of two or more cameras",
                   "flexura estimate front.png side.png --cameras cameras.toml --arm arm.toml");
-  estimate->add_option("IMAGE", arguments->images, "Picture files, one of each camera")
+  estimate->add_option("IMAGE", arguments->images, "Picture files, one from each camera")
       ->type_name("")
       ->required();
   estimate
@@ -156,7 +153,7 @@ void add_intrinsics(CLI::App& app, Command& chosen) {
       ->type_name("N");
   intrinsics
       ->add_option("--hold-out", arguments->hold_out,
-                   "Exclude every Nth view from the fit and test the fit with it")
+                   "Exclude every Nth view from the fit, and test the fit with the excluded views")
       ->type_name("N");
   intrinsics->add_option("--name", arguments->names, "The camera's name; twice for a pair")
       ->type_name("NAME")

@@ -15,7 +15,7 @@ enum class Takes {
   folder,
 };
 
-/// One option or positional argument of a command, as its help shows it.
+/// Description of one option or positional argument of a command for the help.
 struct OptionHelp {
   std::vector<std::string>
       /// Names of an option, such as "-h" and "--help", or the name of a positional argument, such as
@@ -27,17 +27,18 @@ struct OptionHelp {
   std::vector<std::string> choices;  ///< Allowed words, for Takes::choice.
 };
 
-/// One command, as its help shows it.
+/// Description of one command for the help.
 struct CommandHelp {
   std::string name;
   std::string group;    ///< Heading under which `flexura --help` lists the command.
   std::string meaning;  ///< Description in one sentence.
-  std::string example;  ///< Lines that can be pasted into a shell.
+  std::string example;  ///< Example: lines that the user can paste into a shell.
   std::vector<OptionHelp> positionals;
   std::vector<OptionHelp> options;
 };
 
-/// Description of all commands. The help, the shells' completion and the manual page are made from it.
+/// Description of all commands. The program makes its help, the completion scripts and the manual page from
+/// this description.
 struct ProgramHelp {
   std::string name;
   std::string version;

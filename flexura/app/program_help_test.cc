@@ -48,7 +48,7 @@ TEST_F(Program, KeepsAFileThatIsThereWhenANewExperimentIsWritten) {
   std::ofstream(path("arm.toml")) << "mine";
   const Ended kept = run("new arm");
   EXPECT_EQ(kept.status, 2);
-  EXPECT_EQ(kept.err, "arm.toml: the file exists and is kept: expected the name of a new file\n");
+  EXPECT_EQ(kept.err, "arm.toml: the file exists, and is not overwritten: expected the name of a new file\n");
   EXPECT_EQ(read_text_file(path("arm.toml"), 100), "mine");
   const Ended unknown = run("new spider");
   EXPECT_EQ(unknown.status, 2);

@@ -52,7 +52,9 @@ int rehearse_command(const RehearseArguments& arguments, std::ostream& out, std:
   Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, {}});
   const std::filesystem::path file = copy_of(arguments);
   if (!is_missing(file) && !is_copy(file))
-    throw input_error(file.string(), "the file is no copy of a rehearsal and is kept: expected another name");
+    throw input_error(
+        file.string(),
+        "the file was not written by a rehearsal, and is not overwritten: expected another name");
   VideoServerConfig server = arguments.server;
   server.encoding = named<VideoEncoding>("--video", arguments.video);
   const StopSignal stop;
@@ -64,17 +66,17 @@ int rehearse_command(const RehearseArguments& arguments, std::ostream& out, std:
   }
   experiment.equipment = rehearsal->equipment();
   experiment.truth.reset();
-  replace_file(file, fmt::format("{}: its devices are there until the rehearsal ends.\n{}", copy_mark,
+  replace_file(file, fmt::format("{}: the devices in it exist until the rehearsal ends.\n{}", copy_mark,
                                  experiment_toml(experiment)));
   print_devices(experiment, arguments.video, out);
   print_line(out, "wrote", file.string());
-  print_line(out, "run it in another terminal", fmt::format("flexura run {}", file.string()));
+  print_line(out, "run in another terminal", fmt::format("flexura run {}", file.string()));
   out << "Ctrl-C ends the rehearsal\n" << std::flush;
   for (int runs = 0; stop.come() == 0 && rehearsal->failure().empty();) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     if (rehearsal->runs() == runs) continue;
     runs = rehearsal->runs();
-    out << "arm and heads are back at their start, for the next run\n" << std::flush;
+    out << "arm and heads are back in their start positions for the next run\n" << std::flush;
   }
   const std::string failure = rehearsal->failure();
   for (std::size_t i = 0; i < experiment.equipment->camera.size(); ++i) {

@@ -59,10 +59,9 @@ int render_command(const RenderArguments& arguments, std::ostream& out) {
   Filming filming(experiment);
   const double played = play_unfilmed(next.end, schedule, filming);
   if (arguments.time > played) {
-    throw input_error(
-        "--time",
-        fmt::format("{} s is after the run's end: the run ends at {:.6g} s with an impossible shape",
-                    arguments.time, played));
+    throw input_error("--time", fmt::format("{} s is after the run's end: the run ends at {:.6g} s, because "
+                                            "the arm's shape is impossible there",
+                                            arguments.time, played));
   }
   const bool has_next = next.start <= played;
   const Shot shot = filming.shot(place, arguments.time);

@@ -13,13 +13,13 @@ struct RenderArguments {
   std::string camera;
   double time = 0;  ///< Start of the exposure, s.
   std::string out;
-  bool model = false;  ///< Whether to render the rig's model and ignore [truth].
+  bool model = false;  ///< Whether to render the nominal rig and ignore [truth].
   bool truth = false;  ///< Whether to write exact depth, labels and curves too.
   std::vector<std::string> sets;
 };
 
 /// Writes the image of a camera whose exposure starts at the given time of the experiment's run. The image
-/// equals the one that the run would record. With `truth`, also writes exact data for the middle of that
+/// equals the one that the run would record. With `truth`, also writes exact data for the middle of the
 /// exposure: depth (NAME_depth.tiff, m), labels (NAME_labels.png, 16 bits) and curves (NAME_truth.json).
 /// Prints the names of the files. Throws InputError for bad input, and std::runtime_error if a file cannot be
 /// written.

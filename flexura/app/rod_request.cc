@@ -28,7 +28,8 @@ void check_rod_request(const Rod& rod, const RodRequest& request, Reader& reader
   check_count(request.tensions, "tensions");
   check_count(request.displacements, "displacements");
   if (request.tensions && request.displacements)
-    reader.problem_at("displacements", "are given together with tensions: expected one of them");
+    reader.problem_at("displacements",
+                      "are given together with tensions: expected either displacements or tensions");
 }
 
 }  // namespace flexura

@@ -45,8 +45,8 @@ Table<Request>& add_rod_fields(Table<Request>& table) {
               .range = between(-1e6, 1e6)});
 }
 
-/// Reports an error if the number of tensions or displacements is not the number of tendons, or if both are
-/// given.
+/// Reports an error if the number of tensions or displacements is not the number of tendons, or if both
+/// tensions and displacements are given.
 void check_rod_request(const Rod& rod, const RodRequest& request, Reader& reader);
 
 }  // namespace flexura

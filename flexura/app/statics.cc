@@ -52,7 +52,9 @@ StaticsRequest read_request(const Rod& rod, std::string_view line) {
     if (request.target) {
       check_statics_target(rod, *request.target, reader);
       if (request.tensions || request.displacements)
-        reader.problem_at("target", "is given together with tensions or displacements: expected one of them");
+        reader.problem_at(
+            "target",
+            "is given together with tensions or displacements: expected only one of the three keys");
     }
     const double length = rod.length();
     for (std::size_t i = 0; request.at && i < request.at->size(); ++i) {

@@ -20,7 +20,7 @@ const Table<StaticsPoint>& fields_of(const StaticsPoint*) {
   static const auto table =
       Table<StaticsPoint>("statics point", "Target of a point of the arm.")
           .field("at", &StaticsPoint::at,
-                 {.meaning = "its arc length at rest", .unit = Unit::metre, .range = at_least(0)})
+                 {.meaning = "the point's arc length at rest", .unit = Unit::metre, .range = at_least(0)})
           .field("position", &StaticsPoint::position,
                  {.meaning = "its target position",
                   .unit = Unit::metre,
@@ -79,7 +79,7 @@ void check_statics_target(const Rod& rod, const StaticsTarget& target, Reader& r
   if (!target.tip && !target.direction && !target.rotation && !target.shape)
     reader.problem_at("target", "is empty: expected tip, direction, rotation or shape");
   if (target.direction && target.rotation)
-    reader.problem_at("target", "gives the orientation twice: expected direction or rotation, not both");
+    reader.problem_at("target", "gives the orientation twice: expected either direction or rotation");
   if (target.direction && !(vector(*target.direction).norm() > 1e-9))
     reader.problem_at("target.direction", "is zero: expected a direction");
   if (target.rotation) {

@@ -14,8 +14,8 @@ namespace flexura {
 class TimeLeft {
  public:
   /// Returns the remaining time, s, given that `fraction` in [0, 1] is done `elapsed` seconds after the
-  /// start. Returns std::nullopt while too little is done for an estimate. A fraction below the previous one
-  /// starts a new part of the job.
+  /// start. Returns std::nullopt while too little of the job is done for an estimate. A fraction below the
+  /// previous one starts a new part of the job.
   std::optional<double> at(double fraction, double elapsed);
 
  private:

@@ -22,7 +22,7 @@ struct ViewerArguments {
   std::optional<std::uint16_t> port;  ///< Port; default: 8421, or any free port if 8421 is in use.
   bool browser = true;                ///< Whether to open a browser if there is a display.
   std::string address = "127.0.0.1";  ///< Address of the interface to listen on.
-  std::vector<std::string> names;     ///< Further host names that requests to the viewer may contain.
+  std::vector<std::string> names;     ///< Further host names by which browsers may address the viewer.
 };
 
 /// Arguments of `flexura view`.
@@ -34,7 +34,8 @@ struct ViewArguments {
 /// Serves a viewer and prints its address to `out`. Returns after SIGINT or SIGTERM.
 int view_command(const ViewArguments& arguments, std::ostream& out, std::ostream& err);
 
-/// A viewer that starts with `start`. Prints the viewer's address to `out` and opens it in a browser.
+/// A running viewer, which shows `start` first. Prints the viewer's address to `out` and opens it in a
+/// browser.
 class OpenViewer {
  public:
   OpenViewer(ViewStart start, const ViewerArguments& arguments, std::ostream& out);

@@ -232,7 +232,8 @@ std::vector<MissingDriver> missing_drivers() {
 std::string probe_link(const std::string& address, ClockPort& clock) {
   const LinkAddress parsed = parse_link_address(address);
   if (parsed.kind == LinkAddress::Kind::can)
-    throw std::invalid_argument("a CAN bus cannot be probed: give its drives in a file");
+    throw std::invalid_argument(
+        "a CAN bus cannot be probed: write its drives into the table [rig] of a file");
   const bool is_serial = parsed.kind == LinkAddress::Kind::serial;
   std::string problem;
   if (parsed.kind != LinkAddress::Kind::udp) {

@@ -150,7 +150,7 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"limits the wrong way round", file_with("length = 2.0", "length = 2.0\nstretch_limits = [2, 1]"),
        "x.toml:5:1: arm.section[0].stretch_limits: expected the smaller factor first"},
       {"steps without end", file_with("[arm]", "clock.step = 1e-6\n[arm]"),
-       "x.toml:1:14: clock.step: makes 2e+06 steps of 2 s: expected at most 1e+06"},
+       "x.toml:1:14: clock.step: makes 2e+06 steps in 2 s: expected at most 1e+06"},
       {"negative seed", "seed = -1\n" + std::string(good_file),
        "x.toml:1:8: seed = -1: expected a whole number from 0 to"},
       {"a number too large for TOML", file_with("2.0", "99999999999999999999"), "x.toml:4:"},

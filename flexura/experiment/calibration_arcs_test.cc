@@ -102,16 +102,14 @@ TEST(EtalonLoop, RefusesKeysThatCountForNothing) {
                              "loop = { turn_deg = 1, slide = 0.1, zoom_step = 0.1, arc_deg = 100 }\n",
                              rig)),
       ::testing::ElementsAre(
-          "task[0].loop.turn: this key applies only to the method etalon-paper: expected it to be absent",
-          "task[0].loop.slide: this key applies only to the method etalon-paper: expected it to be absent",
-          "task[0].loop.zoom_step: this key applies only to the method etalon-paper: expected it to be "
-          "absent",
-          "task[0].loop.arc: this key applies only to the methods arcs and arcs-paper: expected it to be "
-          "absent",
-          "task[0].zooms: this key applies only to the method bundle: expected it to be absent"));
+          "task[0].loop.turn: this key applies only to the method etalon-paper: expected no such key",
+          "task[0].loop.slide: this key applies only to the method etalon-paper: expected no such key",
+          "task[0].loop.zoom_step: this key applies only to the method etalon-paper: expected no such key",
+          "task[0].loop.arc: this key applies only to the methods arcs and arcs-paper: expected no such key",
+          "task[0].zooms: this key applies only to the method bundle: expected no such key"));
   const LoopRig arcs = arcs_cameras({WrongStart{}, WrongStart{}});
   const std::string count =
-      ": this key applies only to the methods bundle and bundle-etalon: expected it to be absent";
+      ": this key applies only to the methods bundle and bundle-etalon: expected no such key";
   EXPECT_THAT(
       problems_of(arcs_rig(
           "method = \"arcs\"\ncamera_prior = { focal_std = 0.2, principal_point_std = 3, zero_std = 0.1, "

@@ -19,7 +19,7 @@ struct Experiment : Setup {
 
 const Table<Experiment>& fields_of(const Experiment*);
 
-/// Changes by the command line that are made in a file before it is checked.
+/// Changes from the command line, which are made in a file before the check of the file.
 struct Overrides {
   std::vector<std::string> sets;     ///< Changes "path=value" in TOML, such as "arm.section.0.length=2.5".
   std::optional<std::int64_t> seed;  ///< Seed that replaces the file's seed.

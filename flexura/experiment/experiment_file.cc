@@ -192,7 +192,7 @@ void check_whole(const Experiment& experiment, const Node& document) {
   };
   if (duration / experiment.clock.step > max_steps) {
     refuse("clock", "step",
-           fmt::format("{:.3g} steps of {:.6g} s: expected at most {:.0e}", duration / experiment.clock.step,
+           fmt::format("{:.3g} steps in {:.6g} s: expected at most {:.0e}", duration / experiment.clock.step,
                        duration, max_steps));
   }
   double frames = 0;
@@ -211,7 +211,8 @@ void set_value(Node& document, const std::string& set) {
   const std::string source = "--set " + set.substr(0, set.find('\n'));
   const std::size_t equals = set.find('=');
   if (equals == std::string::npos) throw input_error(source, "expected path=value");
-  if (set.find('\n') != std::string::npos) throw input_error(source, "expected one value on one line");
+  if (set.find('\n') != std::string::npos)
+    throw input_error(source, "expected a single value on a single line");
   std::string_view path = std::string_view(set).substr(0, equals);
   path.remove_prefix(std::min(path.find_first_not_of(' '), path.size()));
   path = path.substr(0, path.find_last_not_of(' ') + 1);

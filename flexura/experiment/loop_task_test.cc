@@ -316,19 +316,19 @@ TEST(EtalonLoop, RefusesWhatItCannotDo) {
       HasSubstr("expected [stand.etalon]"));
   const LoopRig rig = {.size = 0.5};
   EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\narm_prior.response_std = 0.1\n", rig)),
-            "task[0].arm_prior: this key applies only to the method bundle: expected it to be absent");
-  EXPECT_EQ(
-      problem_of(etalon_rig("method = \"etalon\"\ncamera_prior.rotation_std_deg = 5\n", rig)),
-      "task[0].camera_prior: this key applies only to the methods bundle, bundle-etalon and arcs: expected "
-      "it to be absent");
+            "task[0].arm_prior: this key applies only to the method bundle: expected no such key");
+  EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\ncamera_prior.rotation_std_deg = 5\n", rig)),
+            "task[0].camera_prior: this key applies only to the methods bundle, bundle-etalon and arcs: "
+            "expected no "
+            "such key");
   EXPECT_EQ(
       problem_of(etalon_rig("method = \"etalon\"\nrequired_std.angle_deg = 1\n", rig)),
-      "task[0].required_std: this key applies only to the methods bundle and bundle-etalon: expected it "
-      "to be absent");
+      "task[0].required_std: this key applies only to the methods bundle and bundle-etalon: expected no "
+      "such key");
   EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\npose = [{ bends = [[0.1, 0]] }]\n", rig)),
             "task[0]: this method uses neither poses nor zooms: expected neither key pose nor key zooms");
   EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\nloop.turn_deg = 1\n", rig)),
-            "task[0].loop: this key applies only to the paper's methods: expected it to be absent");
+            "task[0].loop: this key applies only to the paper's methods: expected no such key");
   EXPECT_EQ(
       error_of_file(etalon_rig("method = \"bundle-etalon\"\nstages = false\nrequired_std.angle_deg = 1\n"
                                "target = [0, 0.4, 0]\ncamera_prior.zero_std_deg = 1\n",

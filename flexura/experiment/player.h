@@ -42,8 +42,8 @@ class Player {
   /// Returns the progress of the run.
   [[nodiscard]] RunProgress& progress() { return progress_; }
 
-  /// Plays all steps. Stops before the first impossible state, when a task ends the run, or when the run is
-  /// cancelled.
+  /// Plays all steps. Stops before the first impossible state, or when a task ends the run, or when the run
+  /// is cancelled.
   Played play();
 
  private:

@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// Largest number of violations that get a drawing each.
+/// Largest number of violations with a drawing of their own.
 inline constexpr std::size_t max_pictured_violations = 4;
 
 /// Inserts the schedule's state at `time` (s) into the report's times and states, unless the report has a
@@ -17,8 +17,8 @@ inline constexpr std::size_t max_pictured_violations = 4;
 void add_state(double time, const Schedule& schedule, ReportData& data);
 
 /// Adds the result of the safety check to a report that has times and states. Selects the most informative
-/// violations, one per group. Also inserts the schedule's states at their worst moments, up to the end of the
-/// run.
+/// violations, one per group. Inserts into the report the schedule's states at the worst moments of these
+/// violations, up to the end of the run.
 void add_safety(const SafetyReport& safety, const Schedule& schedule, ReportData& data);
 
 }  // namespace flexura

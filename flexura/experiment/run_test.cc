@@ -361,7 +361,7 @@ TEST(Overrides, ChangeValuesUnderTheSameChecks) {
   EXPECT_THAT(error("arm.section.0.lenght=1"), HasSubstr("did you mean \"length\"?"));
   EXPECT_THAT(error("arm.section.0.length"), HasSubstr("expected path=value"));
   EXPECT_THAT(error("=1"), HasSubstr("is not a path"));
-  EXPECT_THAT(error("seed=2\nx=1"), HasSubstr("--set seed=2: expected one value on one line"));
+  EXPECT_THAT(error("seed=2\nx=1"), HasSubstr("--set seed=2: expected a single value on a single line"));
 }
 
 TEST(Overrides, AreToldOfAllAtOnce) {

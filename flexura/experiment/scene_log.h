@@ -22,12 +22,12 @@ namespace flexura {
 /// Returns a camera's lens at its zoom, as a message for `time`, s.
 [[nodiscard]] CameraCalibrationMessage calibration_message(const Camera& camera, double time, double zoom);
 
-/// Logs one camera's lens and the pose of its optical frame, for programs that display logs. Logs both at the
-/// start and after changes, at most once per frame of the camera.
+/// Logs one camera's lens and the pose of its optical frame, for programs that display logs. Logs lens and
+/// pose at the start and after changes, at most once per frame of the camera.
 class CameraDrawing {
  public:
-  /// `camera`: the true camera. `model`: its model; reported axis positions are relative to the model's
-  /// start. Logs the lens at the start; the pose at the start is in frames_message.
+  /// `camera`: the true camera. `model`: the camera's model; reported axis positions are relative to the
+  /// model's start. Logs the lens at the start; the pose at the start is in frames_message.
   CameraDrawing(const CameraConfig& camera, const CameraConfig& model, Recorder& recorder);
 
   [[nodiscard]] const std::string& name() const { return camera_.config().name; }

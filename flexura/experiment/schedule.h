@@ -22,7 +22,7 @@ class Rig;
 class TaskRunner;
 struct MissedTarget;
 
-/// A task with its start and motion.
+/// Part of a schedule: a task with its start and motion.
 struct Leg {
   std::string name;  ///< Name of the task, or its kind (task_name).
   std::string kind;  ///< Kind of the task: "move", ...
@@ -56,7 +56,7 @@ class Schedule {
   /// schedule contains the largest possible motion.
   Schedule(const Experiment& experiment, const TaskRunners& tasks, const DoneTasks& done);
 
-  /// Returns the legs. Without tasks, the only leg is a hold with duration 0.
+  /// Returns the legs. Without tasks, the schedule has a single leg, which is a hold with duration 0.
   [[nodiscard]] const std::vector<Leg>& legs() const { return legs_; }
   [[nodiscard]] double duration() const { return duration_; }  ///< In s.
   /// Returns the number of clock steps after time 0. The last step is at duration(); all others are at
@@ -72,8 +72,8 @@ class Schedule {
   [[nodiscard]] ArmState state_at(double time) const;
   /// Returns bounds on each section's rates in [start, end] s; std::nullopt if a leg has no known rates.
   [[nodiscard]] std::optional<std::vector<SectionRates>> rates(double start, double end) const;
-  /// Returns the hazards for the arm and its motors, and unreachable targets. `progress` may be null; it can
-  /// cancel the check.
+  /// Returns the hazards for the arm and its motors, and unreachable targets. `progress` may be null; the
+  /// caller can cancel the check through it.
   [[nodiscard]] SafetyReport check(Progress* progress = nullptr) const;
 
  private:

@@ -143,7 +143,7 @@ TEST(ServoFaults, StepsThatArePassedAreLeftOut) {
   EXPECT_GE(missed, 3 * static_cast<long>(result.steps.size() / 7 - 1));
   EXPECT_LE(missed, 3 * static_cast<long>(result.steps.size() / 7 + 1));
   EXPECT_TRUE(notes.has("a control step took longer than 0.03333 s"));
-  EXPECT_TRUE(notes.has(fmt::format("{} control steps of 0.03333 s were missed", missed)));
+  EXPECT_TRUE(notes.has(fmt::format("{} control steps of 0.03333 s were skipped", missed)));
 }
 
 // Two pictures of the target shape, in their order and swapped.

@@ -14,12 +14,13 @@
 namespace flexura {
 
 /// Returns the axis positions of the true camera for the reported positions `reported`. `first`: positions of
-/// the model at the start. The true camera's start may differ from it; both change equally.
+/// the model at the start. The true camera may start at other positions, but its changes are equal to the
+/// reported changes.
 [[nodiscard]] CameraStance true_stance(const Camera& camera, const CameraStance& first,
                                        const CameraStance& reported);
 
-/// Records the true arm and the cameras of a run for the report's 3D view. Keeps only some states of long
-/// runs.
+/// Records the true arm and the cameras of a run for the report's 3D view. For long runs, it keeps only a
+/// part of the states.
 class SpaceRecord {
  public:
   /// Adds the experiment's cameras with their poses at the start.

@@ -23,7 +23,7 @@ struct ExportResult {
 /// - contacts.csv: the contacts, for dynamic arms that touch something,
 /// - tensions.csv: the tendons' tensions, for arms that are elastic rods,
 /// - energy.csv: the arm's energies, for elastic rods with inertia,
-/// - the tables of `more` that have messages in the log (task_tables).
+/// - and each table of `more` for which the log has messages (task_tables).
 /// `progress` may be null and cannot cancel the export. Throws InputError if `results` has no log, and
 /// std::runtime_error if the log is corrupt or a file is not writable.
 ExportResult export_csv(const std::filesystem::path& results, LogTables more, Progress* progress = nullptr);

@@ -24,9 +24,9 @@ class FilmWriter {
   FilmWriter(FilmWriter&&) = delete;
   FilmWriter& operator=(FilmWriter&&) = delete;
 
-  /// Appends the picture `times` > 0 times. `png` is the picture as a PNG file.
+  /// Appends a picture `times` > 0 times. `png` is the content of the picture's PNG file.
   virtual void put(const std::string& png, std::int64_t times) = 0;
-  /// Completes the film. Called once, after the last frame.
+  /// Completes the film. The caller must call this function once, after the last frame.
   virtual void finish() = 0;
 };
 

@@ -11,8 +11,8 @@ namespace flexura {
 /// Name of the program that makes films.
 inline constexpr const char* film_program = "ffmpeg";
 
-/// Makes films (export_films) with the program ffmpeg on the PATH: RESULTS/mp4/NAME.mp4 (H.264). Also throws
-/// std::runtime_error if ffmpeg is missing or fails.
+/// Makes films (export_films) with the program ffmpeg on the PATH: RESULTS/mp4/NAME.mp4 (H.264). Throws the
+/// exceptions of export_films, and std::runtime_error if ffmpeg is missing or fails.
 ExportResult export_mp4(const std::filesystem::path& results, const std::vector<CameraConfig>& cameras,
                         Progress* progress = nullptr);
 

@@ -10,7 +10,7 @@
 namespace flexura {
 
 /// A message for a log. A message can have any type with a table of fields. This object refers to the message
-/// and the topic, so it is valid only during one call.
+/// and the topic without copying them, so it is valid only during the call that receives it.
 class LoggedMessage {
  public:
   /// `time`: time of the message in the log, s since the experiment's start.

@@ -108,8 +108,8 @@ const Table<TensionsMessage>& fields_of(const TensionsMessage*) {
           .field("tensions", &TensionsMessage::tensions,
                  {.meaning = "Tension of each tendon at the arm's base, N."})
           .field("lost_steps", &TensionsMessage::lost_steps,
-                 {.meaning = "Microsteps that each motor has lost so far; its controller does not know them. "
-                             "Only for arms with drives."});
+                 {.meaning = "Microsteps that each motor has lost so far; its controller does not notice "
+                             "this loss. Missing for arms without drives."});
   return table;
 }
 
@@ -155,8 +155,8 @@ const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*) {
   static const auto table =
       Table<HeadReadingMessage>("flexura.HeadReading", "Measured pan, tilt and zoom of a camera's head.")
           .field("time", &HeadReadingMessage::time, {.meaning = "Time since the experiment's start, s."})
-          .field("pan", &HeadReadingMessage::pan, {.meaning = "Pan, rad, to the camera's left."})
-          .field("tilt", &HeadReadingMessage::tilt, {.meaning = "Tilt, rad, upwards."})
+          .field("pan", &HeadReadingMessage::pan, {.meaning = "Pan, rad; positive to the camera's left."})
+          .field("tilt", &HeadReadingMessage::tilt, {.meaning = "Tilt, rad; positive upwards."})
           .field("zoom", &HeadReadingMessage::zoom, {.meaning = "Zoom, as a ratio or as a motor position."})
           .field("moving", &HeadReadingMessage::moving, {.meaning = "Whether the device is moving."});
   return table;

@@ -62,7 +62,8 @@ struct EventMessage {
   std::int64_t level = 2;  ///< 2 info, 3 warning, 4 error.
   std::string message;
   std::string name;  ///< Source of the event: the name of a task, or "run".
-  std::string file;  ///< Empty; `line` is 0. Both exist for compatibility with other programs.
+  std::string file;  ///< Always empty, and `line` is always 0. `file` and `line` exist because foxglove.Log
+                     ///< requires them.
   std::int64_t line = 0;
 };
 
@@ -88,16 +89,16 @@ struct ArmReadingMessage {
   bool moving = false;
 };
 
-/// flexura.Tensions, on /arm/tensions, logged with the true arm if that is an elastic rod.
+/// flexura.Tensions, on /arm/tensions, logged with the true arm if this arm is an elastic rod.
 struct TensionsMessage {
   double time = 0;               ///< In s.
   std::vector<double> tensions;  ///< Tension of each tendon at the arm's base, N.
-  /// Microsteps that each motor has lost so far; its controller does not know them. Only for arms with
-  /// drives.
+  /// Microsteps that each motor has lost so far; its controller does not notice this loss. Missing for arms
+  /// without drives.
   std::optional<std::vector<double>> lost_steps;
 };
 
-/// flexura.Energy, on /arm/energy, logged with the true arm if that is an elastic rod with inertia.
+/// flexura.Energy, on /arm/energy, logged with the true arm if this arm is an elastic rod with inertia.
 struct EnergyMessage {
   double time = 0;     ///< In s.
   double kinetic = 0;  ///< Kinetic energy, J.
@@ -116,8 +117,8 @@ struct ContactMessage {
   std::optional<double> normal_force = {};  ///< Normal force, N.
   std::optional<bool> sticks = {};          ///< Whether the surfaces do not slide along each other.
 };
-/// flexura.Contacts, on /arm/contacts, logged with the true arm if that is an elastic rod with inertia. The
-/// message is logged while the arm touches something, and once afterwards.
+/// flexura.Contacts, on /arm/contacts, logged with the true arm if this arm is an elastic rod with inertia.
+/// The message is logged while the arm touches something, and once afterwards.
 struct ContactsMessage {
   double time = 0;  ///< In s.
   std::vector<ContactMessage> contacts;

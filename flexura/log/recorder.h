@@ -46,8 +46,8 @@ class Recorder {
   void reading(const std::string& camera, const HeadReading& reading);
   void reading(const std::string& camera, const StageReading& reading);
 
-  /// Writes a frame. `message` is the frame's logged_image(). Computing this message takes most of the time,
-  /// and other threads can do this.
+  /// Writes a frame. `message` is the frame's logged_image(). Computing this message takes most of the time
+  /// for a frame; a thread other than the recorder's can compute it.
   void image(const std::string& camera, const Frame& frame, std::string_view message);
   /// Writes a picture that is not a camera's frame on the topic `topic`.
   void picture(const std::string& topic, double time, const Picture& picture);

@@ -4,9 +4,9 @@
 
 namespace flexura {
 
-/// Makes the new folder `desired`. If `desired` exists, makes `desired`-2, -3, ... instead, because results
-/// are never overwritten. Also makes missing parent folders. Returns the new folder. Throws
-/// std::runtime_error with the path on a system error.
+/// Makes the new folder `desired` and returns its path. If `desired` exists, makes `desired`-2, -3, ...
+/// instead, because results are never overwritten. Makes missing parent folders too. Returns the new folder.
+/// Throws std::runtime_error with the path on a system error.
 [[nodiscard]] std::filesystem::path make_new_folder(const std::filesystem::path& desired);
 
 /// Returns the default folder of an experiment's results: results/NAME. NAME is the name of the file, or the

@@ -10,7 +10,8 @@
 
 namespace flexura {
 
-/// Returns the result of `read`. Converts the exception of a damaged log to InputError.
+/// Calls `read` and returns its result. If `read` throws because the log is damaged, throws InputError
+/// instead.
 template <class Read>
 auto from_log(Read&& read) {
   try {

@@ -31,7 +31,7 @@ class RunLog {
   void publish(const LoggedMessage& message);
   /// Writes a camera's frame, with its logged_image.
   void image(const std::string& camera, const Frame& frame, std::string_view message);
-  /// Reports the end of a task of the rig.
+  /// Reports the end of a task that the rig performed.
   void task_ended();
 
   /// Returns the recorder, for messages that only the log receives.

@@ -43,7 +43,8 @@ class RunWatcher {
   /// Receives the arm's state at every clock step, and the measured axis positions of all cameras. `time`:
   /// time of the step, s. If the run simulates no rig, the axis positions are empty: the cameras are at rest.
   virtual void state(double time, const ArmState& state, std::span<const CameraReading> cameras) = 0;
-  /// Returns true if truth() must be called at the next step. The true arm is only computed in this case.
+  /// Returns true if the run must call truth() at the next step. The run computes the true arm only in this
+  /// case.
   [[nodiscard]] virtual bool needs_truth() { return false; }
   /// Receives the true arm at a clock step, if it is known, after the call of state().
   virtual void truth(double /*time*/, const TrueArm& /*arm*/) {}
@@ -52,7 +53,7 @@ class RunWatcher {
                         const std::string& /*text*/) {}
   /// Receives a task's message as logged; LoggedMessage::as gives its type.
   virtual void logged(const LoggedMessage& /*message*/) {}
-  /// Called after a task of the rig has ended.
+  /// The run calls this function after a task that the rig performs has ended.
   virtual void task_ended() {}
 };
 

@@ -61,7 +61,8 @@ const Table<LineMessage>& fields_of(const LineMessage*) {
           .field("color", &LineMessage::color, {})
           .field("colors", &LineMessage::colors,
                  {.meaning = "Colours of the points; empty: all have `color`."})
-          .field("indices", &LineMessage::indices, {.meaning = "Indices of points; empty: all, in order."});
+          .field("indices", &LineMessage::indices,
+                 {.meaning = "Indices of points; empty: all points, in order."});
   return table;
 }
 
@@ -89,12 +90,13 @@ const Table<SceneMessage>& fields_of(const SceneMessage*) {
 }
 
 const Table<FrameMessage>& fields_of(const FrameMessage*) {
-  static const auto table = Table<FrameMessage>("foxglove.FrameTransform", "Pose of a frame in another.")
-                                .field("timestamp", &FrameMessage::timestamp, {})
-                                .field("parent_frame_id", &FrameMessage::parent_frame_id, {})
-                                .field("child_frame_id", &FrameMessage::child_frame_id, {})
-                                .field("translation", &FrameMessage::translation, {.meaning = "m"})
-                                .field("rotation", &FrameMessage::rotation, {});
+  static const auto table =
+      Table<FrameMessage>("foxglove.FrameTransform", "Pose of a frame relative to another frame.")
+          .field("timestamp", &FrameMessage::timestamp, {})
+          .field("parent_frame_id", &FrameMessage::parent_frame_id, {})
+          .field("child_frame_id", &FrameMessage::child_frame_id, {})
+          .field("translation", &FrameMessage::translation, {.meaning = "m"})
+          .field("rotation", &FrameMessage::rotation, {});
   return table;
 }
 
@@ -116,8 +118,9 @@ const Table<CameraCalibrationMessage>& fields_of(const CameraCalibrationMessage*
           .field("distortion_model", &M::distortion_model, {})
           .field("D", &M::distortion, {.meaning = "k1, k2, p1, p2, k3."})
           .field("K", &M::intrinsics, {.meaning = "fx 0 cx, 0 fy cy, 0 0 1; px."})
-          .field("R", &M::rectification, {.meaning = "The identity: pictures are not rectified."})
-          .field("P", &M::projection, {.meaning = "K and a column of zeros; px."});
+          .field("R", &M::rectification,
+                 {.meaning = "The identity matrix, because pictures are not rectified."})
+          .field("P", &M::projection, {.meaning = "The intrinsic matrix K and a column of zeros, px."});
   return table;
 }
 

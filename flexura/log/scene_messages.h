@@ -97,7 +97,7 @@ struct CameraCalibrationMessage {
   std::string distortion_model = "plumb_bob";
   std::vector<double> distortion;            ///< k1, k2, p1, p2, k3.
   std::array<double, 9> intrinsics = {};     ///< fx 0 cx, 0 fy cy, 0 0 1, row by row, px.
-  std::array<double, 9> rectification = {};  ///< The identity: pictures are not rectified.
+  std::array<double, 9> rectification = {};  ///< The identity matrix, because pictures are not rectified.
   std::array<double, 12> projection = {};    ///< The intrinsics and a column of zeros, row by row, px.
 };
 

@@ -18,7 +18,8 @@ enum class PlotView : std::uint8_t { xoy, zoy };
 /// Returns the coordinates of a point of W in a view, m.
 [[nodiscard]] Eigen::Vector2d seen(PlotView view, const Eigen::Vector3d& p_W);
 
-/// Returns true if the arm bends in a plane parallel to XOY. Then the first view shows the arm's true shape.
+/// Returns true if the arm bends in a plane parallel to XOY. The first view of this arm shows its undistorted
+/// shape.
 [[nodiscard]] bool lies_in_xoy(const Arm& arm);
 
 /// Returns the page points of an arc in a view. The points are displaced to the left of the arc's direction

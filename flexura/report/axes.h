@@ -33,7 +33,8 @@ inline constexpr double tallest_plot = 430.0;  ///< Largest height of a plot, pa
 /// Ticks of an axis.
 struct Ticks {
   std::vector<double> values;  ///< Increasing multiples of 1, 2 or 5 times a power of ten, inside the range.
-  std::vector<std::string> labels;  ///< Labels, one per value, all with equal numbers of decimals.
+  std::vector<std::string>
+      labels;  ///< Labels of the values, one per value, all with the same number of decimals.
 };
 
 /// Returns ticks for a range of positive extent: at most `most` (>= 2), and as many as possible.
@@ -51,7 +52,7 @@ struct PlotFrame {
   Eigen::Vector2d corner;  ///< Top left corner of the plot, page units.
   Eigen::Vector2d size;    ///< Width and height of the plot, page units.
   bool y_down = false;     ///< Whether the y of data increases downwards.
-  bool y_log = false;      ///< Whether the y of data are exponents of ten. The axis then shows the powers.
+  bool y_log = false;  ///< Whether the y of data are exponents of ten, so that the axis shows powers of ten.
 
   [[nodiscard]] Eigen::Vector2d scale() const { return {size.x() / x.extent(), size.y() / y.extent()}; }
   /// Returns the page point of a data point.

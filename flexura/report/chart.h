@@ -19,22 +19,22 @@ struct ChartSeries {
       {};  ///< Style class for colour and dash; empty: chosen by the position in the chart.
 };
 
-/// A chart of values over time or another variable. In the page, the chart is an interactive plot. As a file,
-/// it is a picture.
+/// A chart of values over time or another variable. In the page, the chart is an interactive plot. In a file
+/// of its own, the chart is a picture.
 struct LineChart {
   std::string heading;      ///< Heading, such as "bend of each section".
   std::string x_label;      ///< Name of the x axis, such as "t (s)".
   std::string value_label;  ///< Name of the value axis, such as "bend_x (deg)".
-  double least =
-      1.0;  ///< Smallest extent of the value axis. This extent prevents small noise from filling the chart.
+  double least = 1.0;  ///< Smallest extent of the value axis, so that small noise does not fill the chart.
   std::vector<double> x = {};  ///< Values of x, increasing; at least one.
   std::vector<ChartSeries> series = {};
   std::string legend =
       {};  ///< Name of the variable that distinguishes the series, such as "section"; may be empty.
   bool is_of_run =
-      false;  ///< Whether x are times of the run. The page's player then marks its time in the chart.
+      false;  ///< Whether x are times of the run, so that the page's player marks its time in the chart.
   std::vector<double> marks = {};  ///< Positions of fine vertical lines.
-  bool is_log = false;  ///< Whether values are exponents of ten. A logarithmic axis then shows the powers.
+  bool is_log =
+      false;  ///< Whether values are exponents of ten, so that a logarithmic axis shows powers of ten.
 
   /// Returns the label of the value axis, which states whether the axis is logarithmic.
   [[nodiscard]] std::string axis_label() const { return value_label + (is_log ? ", log scale" : ""); }

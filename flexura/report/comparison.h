@@ -27,9 +27,9 @@ struct TimedValues {
   std::vector<double> values;  ///< Values, one per time.
 };
 
-/// Returns a chart of one quantity in two runs, with the lines A and B. Both are interpolated linearly at at
-/// most 2000 common times. A line is interrupted where its run has no values. `least`: LineChart::least.
-/// Throws std::invalid_argument if both are empty.
+/// Returns a chart of one quantity in two runs, with the lines A and B. Both lines are interpolated linearly
+/// at common times, at most 2000. A line is interrupted where its run has no values. `least`:
+/// LineChart::least. Throws std::invalid_argument if `a` and `b` are both empty.
 [[nodiscard]] LineChart overlaid_chart(std::string heading, std::string label, double least,
                                        const TimedValues& a, const TimedValues& b);
 

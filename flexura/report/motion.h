@@ -18,14 +18,14 @@ inline constexpr std::size_t max_shown_numbers = 200'000;
 
 /// Returns increasing indices of at most `most` (>= 2) of the increasing `times`. The indices include the
 /// first and the last time, and the times nearest to those in `desired`. If `desired` has more than most / 2
-/// times, only an even selection of these is included. The other indices are evenly spaced.
+/// times, the result includes only an evenly spaced selection of them. The other indices are evenly spaced.
 [[nodiscard]] std::vector<std::size_t> kept_indices(const std::vector<double>& times,
                                                     const std::vector<double>& desired, std::size_t most);
 
-/// Violations that one drawing shows, at the time when they are worst.
+/// Violations that one drawing shows, and the state at the time when these violations are worst.
 struct UnsafeMoment {
   std::vector<std::size_t> violations;  ///< Indices in ReportMotion::violations.
-  std::size_t state = 0;                ///< Index of the state nearest to this time.
+  std::size_t state = 0;                ///< Index of the state nearest to the worst time.
 };
 
 /// The part of a run that its report shows.
@@ -53,8 +53,8 @@ struct ReportMotion {
   [[nodiscard]] bool is_unsafe(std::size_t section, std::size_t i) const;
   [[nodiscard]] std::size_t end() const { return times.size() - 1; }
   [[nodiscard]] const Eigen::Vector3d& tip(std::size_t i) const { return backbones[i].tip().position; }
-  /// Returns true if cord angles are relative to W's +X, as in the paper. This is the case for an arm in XOY
-  /// whose archings are counter-clockwise seen from camera 1.
+  /// Returns true if cord angles are relative to W's +X, as in the paper. The result is true for an arm in
+  /// XOY whose archings are counter-clockwise seen from camera 1.
   [[nodiscard]] bool has_cord_angles() const { return in_plane && arm.X_WB.rotation(2, 1) < 0.0; }
   /// Returns 2 if the tip moves in the plane XOY (Z = 0), otherwise 3.
   [[nodiscard]] int tip_coordinates() const;

@@ -114,7 +114,7 @@ std::string safety_html(const ReportData& data, bool has_player) {
   const auto& [violations, lines, remarks] = *data.safety;
   std::string html =
       "<section aria-labelledby=\"safety-title\" class=\"safety\">\n<h2 id=\"safety-title\">Safety</h2>\n";
-  if (violations.empty()) html += "<p>The motion is within its limits and touches nothing.</p>\n";
+  if (violations.empty()) html += "<p>The motion keeps all limits, and the arm touches nothing.</p>\n";
   if (!violations.empty() || !remarks.empty()) html += "<ul>\n";
   for (std::size_t i = 0; i < std::min(lines.size(), max_listed_events); ++i) {
     html += fmt::format("<li>{} <span class=\"unsafe\">unsafe:</span> {}</li>\n",
@@ -256,7 +256,7 @@ std::string curve_html(const ReportMotion& motion) {
   const CurveDeviation end = deviation(drawn_curve(backbone, motion.curve, motion.tension), backbone);
   return fmt::format(
       "<p class=\"note\">The dark line is {}; at the end, its distance from the arm's arcs is at most {:.2g} "
-      "m, and it is {:.2g} % {} than the arcs.</p>\n",
+      "m, and the line is {:.2g} % {} than the arcs.</p>\n",
       name, end.distance, 100 * std::abs(end.length / backbone.length() - 1),
       end.length < backbone.length() ? "shorter" : "longer");
 }

@@ -27,7 +27,7 @@ struct Chapter {
   std::string text;                   ///< Paragraph; any text.
   std::vector<ReportFigure> figures;  ///< Figures; their names are valid file names and unique in the report.
   std::vector<std::string> points = {};    ///< List below the paragraph; any texts.
-  bool is_first_tall = true;               ///< Whether the first figure is as high as two figures.
+  bool is_first_tall = true;               ///< Whether the first figure has twice the usual height.
   std::optional<ChapterTable> table = {};  ///< Table between the paragraph and the list.
   /// A collapsed list below the list `points`. The list is shown if it has items.
   struct Details {
@@ -59,7 +59,7 @@ struct ReportData {
       std::optional<double> pictured_at = {};
       std::optional<Eigen::Vector3d> target = {};  ///< Target of the tip in W, m. It is drawn too.
     };
-    /// A line of the list, for one violation or for a group of violations.
+    /// A line of the report's list of violations, for one violation or for a group.
     struct Line {
       double start = 0.0;  ///< In s.
       std::string text;
@@ -71,9 +71,10 @@ struct ReportData {
 
   /// Result of a task.
   struct Outcome {
-    std::string task;        ///< Name of the task; any text.
-    std::string text;        ///< Result in one line; any text.
-    bool is_reached = true;  ///< Whether the task was successful. Otherwise the line is marked.
+    std::string task;  ///< Name of the task; any text.
+    std::string text;  ///< Result in one line; any text.
+    bool is_reached =
+        true;  ///< Whether the task was successful. The page marks the line of a task that failed.
   };
 
   std::string title;            ///< Any text.

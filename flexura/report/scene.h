@@ -17,8 +17,8 @@ struct PlotScene {
   double width = 0.0;   ///< Width of the whole picture with room for axes and a heading, page units.
   double height = 0.0;  ///< Height of the whole picture, page units.
 
-  /// Returns true if marks at the section borders would not overlap, for an arm of `length` m with this
-  /// number of sections.
+  /// Returns true if there is enough room to draw marks at the section borders without overlap, for an arm of
+  /// `length` m with this number of sections.
   [[nodiscard]] bool has_room_for_joints(double length, std::size_t sections) const {
     return scale() * length > 14.0 * static_cast<double>(sections);
   }
@@ -27,7 +27,7 @@ struct PlotScene {
 };
 
 /// Returns a scene that shows `box` (m, axes of W) with a margin. The scene has only the view XOY if
-/// `one_view`, otherwise both views. The shown range is at least `least` m wide.
+/// `one_view`, otherwise both views. The range that the scene shows is at least `least` m wide.
 [[nodiscard]] PlotScene scene_of(const Eigen::AlignedBox3d& box, bool one_view, double least);
 
 /// Extends a box (m, axes of W) by an arm's tube.

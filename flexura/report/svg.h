@@ -71,7 +71,7 @@ struct Drawing {
 /// Returns the drawing as a separate SVG file with its style and a white background.
 [[nodiscard]] std::string standalone_svg(const Drawing& drawing);
 
-/// Returns the drawing as an element for an HTML page that has the style.
+/// Returns the drawing as an element for an HTML page that contains the style sheet figure.css.
 [[nodiscard]] std::string inline_svg(const Drawing& drawing);
 
 }  // namespace flexura

@@ -13,7 +13,7 @@ struct Answer {
   std::string head;  ///< Status line and header lines, with the empty line at the end.
   std::string body;
   std::span<const std::uint8_t> fixed;  ///< Body in static storage.
-  bool last = false;                    ///< Whether the connection ends after this answer.
+  bool last = false;                    ///< Whether the server closes the connection after this answer.
 };
 
 /// Variable parts of an answer's head.
@@ -21,7 +21,7 @@ struct AnswerHead {
   int status = 200;
   std::string_view content_type;  ///< Media type of the body; if empty, the answer has no body.
   std::size_t length = 0;
-  std::string_view policy;  ///< Content security policy; if empty, that of the page.
+  std::string_view policy;  ///< Content security policy; if empty, the policy of the page.
   std::string_view cache = "no-store";
   std::string_view more;  ///< Additional header lines, each with its CRLF.
   bool last = false;

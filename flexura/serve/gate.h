@@ -20,18 +20,19 @@ class Gate {
   /// port; "localhost" is accepted if this address is a loopback address. The check prevents DNS rebinding,
   /// in which a browser sends the attacker's host name.
   [[nodiscard]] bool knows_host(std::string_view host, std::string_view local) const;
-  /// Returns true if an Origin header is the origin of a page of this server. The header is compared with the
-  /// known host names, not with the Host header. The port must agree too, because browsers share cookies
-  /// between ports.
+  /// Returns true if an Origin header is the origin of a page of this server. The function compares the
+  /// Origin header with the known host names, not with the Host header. The port must agree too, because
+  /// browsers share cookies between ports.
   [[nodiscard]] bool knows_origin(std::string_view origin, std::string_view local) const;
   /// Returns true if the request has the token: "Bearer TOKEN" in its Authorization header, or a cookie of
   /// any name with the token as value.
   [[nodiscard]] bool has_token(const RequestHead& head) const;
   /// Returns true if the request's Authorization header has the token.
   [[nodiscard]] bool has_bearer(const RequestHead& head) const;
-  /// Returns the cookie with the token for a page that uses `host` for this server. Scripts cannot read it,
-  /// and pages of other hosts do not send it. The cookie's name includes the port of `host`: browsers share
-  /// cookies between ports, so two programs on a host need different names.
+  /// Returns the cookie with the token for a page that uses `host` for this server. Scripts cannot read this
+  /// cookie, and browsers do not send it with requests from pages of other hosts. The cookie's name includes
+  /// the port of `host`: browsers share cookies between ports, so two programs on a host need different
+  /// names.
   [[nodiscard]] std::string cookie(std::string_view host) const;
   [[nodiscard]] const std::string& token() const { return token_; }
 

@@ -27,14 +27,15 @@ struct ReadMore {};
 struct Question {
   std::string target;
 };
-/// Next action of a connection: continue as a WebSocket. If that is impossible, call HttpSession::refuse.
+/// Next action of a connection: continue as a WebSocket. If a WebSocket is impossible, call
+/// HttpSession::refuse.
 struct Upgrade {
   std::string key;  ///< Client's Sec-WebSocket-Key.
 };
 using Step = std::variant<ReadMore, Answer, Question, Upgrade>;
 
-/// The protocol of one HTTP connection, without a socket. The input of an HttpSession is bytes, and its
-/// output is actions. Requests that arrive together are answered one after another.
+/// The protocol of one HTTP connection, without a socket. An HttpSession receives bytes and returns actions.
+/// Requests that arrive together are answered one after another.
 class HttpSession {
  public:
   /// `local`: the local address of the connection, without its port.
@@ -43,9 +44,9 @@ class HttpSession {
   /// Adds bytes from the client. Before next() returns ReadMore again, at most `longest_header` bytes may be
   /// added.
   void feed(std::string_view bytes);
-  /// Returns the next action: ReadMore until a request is complete. The caller must call format() after a
-  /// Question, and refuse() after an Upgrade that fails. After an Answer with `last`, it must not call any
-  /// more functions.
+  /// Returns the next action: Returns the next action, which is ReadMore until a request is complete. The
+  /// caller must call format() after a Question, and refuse() after an Upgrade that fails. After an Answer
+  /// with `last`, the caller must not call any more functions.
   Step next();
   /// Returns the HTTP response with the host's answer to the last Question.
   [[nodiscard]] Answer format(HttpAnswer host) const;

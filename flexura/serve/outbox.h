@@ -30,8 +30,8 @@ class Outbox {
   [[nodiscard]] bool push(std::string text);
   /// Sets the newest message of a stream, which replaces an older message that was not sent.
   void post(std::uint32_t stream, std::shared_ptr<const std::string> message);
-  /// Returns the next message to send; call done() after it was sent. If both are waiting, texts and messages
-  /// of streams alternate. Different streams alternate too.
+  /// Returns the next message to send; call done() after it was sent. If both texts and messages of streams
+  /// are waiting, they alternate. Different streams alternate too.
   std::optional<Message> next();
   /// Reports that the message from next() was sent.
   void done();

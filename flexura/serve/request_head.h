@@ -35,10 +35,10 @@ struct Refusal {
   int status = 400;
 };
 
-/// Parses a head, from its first line to its last CRLF, without the empty line. Where RFC 9112 permits it,
-/// refuses everything that two programs could interpret differently. This includes bare line feeds, folded
-/// lines, blanks around a field's name, a repeated length, and two Host fields. A request with a body, of any
-/// length or encoding, is refused with status 413.
+/// Parses a head, from its first line to its last CRLF, without the empty line. Refuses all ambiguous syntax
+/// that RFC 9112 permits a server to refuse. Examples of refused syntax are bare line feeds, folded lines,
+/// blanks around a field's name, a repeated length, and two Host fields. A request with a body, of any length
+/// or encoding, is refused with status 413.
 std::variant<RequestHead, Refusal> parse_request_head(std::string_view text);
 
 /// Returns the text with ASCII letters in lower case, independent of the locale.

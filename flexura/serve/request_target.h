@@ -20,8 +20,8 @@ struct RequestTarget {
 };
 
 /// Splits "/image/front.png?time=1.5" into its parts. Returns std::nullopt if the text does not begin with
-/// "/", or a "%" is not followed by two hexadecimal digits. Also returns it if the path contains a part "."
-/// or ".." (in any encoding), a backslash or a control character.
+/// "/", or a "%" is not followed by two hexadecimal digits. Also returns std::nullopt if the path contains a
+/// part "." or ".." (in any encoding), a backslash or a control character.
 std::optional<RequestTarget> parse_request_target(std::string_view text);
 
 }  // namespace flexura

@@ -82,8 +82,8 @@ class Server {
 
   /// Sends a text. Every text reaches the client, in order. A client that does not read is disconnected.
   void send(ClientId client, std::string text);
-  /// Returns true if a client reads its messages, so that a Host may answer further requests. If a client
-  /// does not read, the server reads nothing more from it, and disconnects it after `idle`.
+  /// Returns true if a client reads its messages fast enough, so that a Host may answer further requests. If
+  /// a client does not read, the server reads nothing more from it, and disconnects it after `idle`.
   [[nodiscard]] bool has_room(ClientId client) const;
   /// Sends the newest message of a stream, which is identified by a small number. Older messages of the
   /// stream that were not sent are discarded.

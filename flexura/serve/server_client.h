@@ -18,7 +18,7 @@ class Server::Loop::Client : public std::enable_shared_from_this<Client> {
   void accept(const Upgrade& how);
   /// Sends waiting messages, unless one is being sent.
   void write();
-  /// Closes the connection immediately; pending operations then fail.
+  /// Closes the connection immediately, so that pending operations fail.
   void cut_off();
 
   Outbox outbox;  // This and the next member are guarded by the loop's mutex.

@@ -23,7 +23,7 @@ namespace net = boost::asio;
 using net::ip::tcp;
 using ErrorCode = boost::system::error_code;
 
-/// Ignores an error of an operation that may fail, such as closing a closed socket.
+/// Receives an error that does not matter, such as the error of closing a closed socket, and ignores it.
 inline void disregard(const ErrorCode&) {}
 
 /// The server's thread and its data. Data that other threads use are guarded by `mutex_`.

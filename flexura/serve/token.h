@@ -7,11 +7,12 @@
 namespace flexura {
 
 /// Returns 128 bits from the system's secure random source as 32 hexadecimal digits. Throws std::system_error
-/// if that source fails.
+/// if the random source fails.
 std::string new_token();
 
-/// Returns the bits that differ in any byte of two texts with equal lengths. The function always reads all
-/// bytes of both texts, so that the time does not depend on their content. `at(text, i)` returns a byte.
+/// Returns a byte whose bits are set where any two corresponding bytes of two texts of equal length differ.
+/// The function always reads all bytes of both texts, so that the time does not depend on their content.
+/// `at(text, i)` returns a byte.
 template <class At>
 unsigned char difference_of(std::string_view a, std::string_view b, At&& at) {
   // volatile prevents the compiler from leaving the loop early.

@@ -37,7 +37,9 @@ constexpr double slow_error = 0.1;
 DisturbanceWatch::DisturbanceWatch(ArmModel model, const DisturbanceConfig& config)
     : model_(std::move(model)), config_(config) {
   if (!(config.limit > 0) || !(config.model_error >= 0) || !(config.window > 0) || config.patience < 1)
-    throw std::invalid_argument("a disturbance watch needs a limit, a window and a patience above 0");
+    throw std::invalid_argument(
+        "a disturbance watch needs a limit, a window and a patience above 0, and a model error of at least "
+        "0");
 }
 
 ArmState DisturbanceWatch::predicted(const Sample& from) const {

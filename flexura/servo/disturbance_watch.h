@@ -15,8 +15,9 @@ struct DisturbanceConfig {
   double limit = 0.05;  ///< Deviation that counts as a disturbance, share of the arm's length; > 0.
   /// Additional deviation allowed for errors of the model, as a share of the predicted motion.
   double model_error = 0.35;
-  double grace = 0.3;   ///< Time after the first observation until the watch begins, s.
-  double window = 0.5;  ///< The newest observation is compared with the one this much earlier, s; > 0.
+  double grace = 0.3;  ///< Time from the first observation until the detection begins, s.
+  double window =
+      0.5;  ///< Time between the newest observation and the earlier one with which it is compared, s; > 0.
   /// Number of successive observations needed to detect the beginning or the end of a disturbance.
   int patience = 3;
 };
@@ -37,7 +38,7 @@ class DisturbanceWatch {
   /// share of the length. Ignores shapes that are not finite, and commands without an equilibrium.
   void add(double time, const ArmState& rest, const ArmState& command, double sigma);
 
-  /// Returns true from the observation at which a disturbance was detected until it is over.
+  /// Returns true from the detection of a disturbance until its end.
   [[nodiscard]] bool is_disturbed() const { return is_disturbed_; }
   /// Returns the deviation of the last observation, share of the arm's length.
   [[nodiscard]] double deviation() const { return deviation_; }

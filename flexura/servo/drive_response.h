@@ -11,8 +11,8 @@ namespace flexura {
 
 /// Learned matrix that maps motions of the drives to motions of the observed shape (docs/control.md, eq.
 /// 21a). The matrix is the identity if the arm follows its model. The matrix hardly depends on the shape, so
-/// each motion improves it for all shapes. Derivatives of features with respect to the drives are derivatives
-/// with respect to the shape times this matrix.
+/// what is learned from one motion is valid for all shapes. Derivatives of features with respect to the
+/// drives are derivatives with respect to the shape times this matrix.
 class DriveResponse {
  public:
   /// `variables`: number of the arm's variables. With ServoJacobian::model, the matrix remains the identity.

@@ -19,20 +19,20 @@ struct FeatureMark {
   std::vector<Eigen::Vector2d> seen, desired;
 };
 
-/// Draws the features that a law compares into the pictures.
+/// Draws into the pictures the features that a law compares.
 ///
 /// - `points`, `silhouettes`: the pixels of the points, or of the edges.
 /// - `chords`, `potential`: chords. A target chord is drawn as the measured chord, rotated about its middle,
 ///   because the law compares only directions.
 /// - `moments`: the centroid and the ellipse with the second moments.
-/// - `shape`: nothing, because it compares no images.
+/// - `shape`: nothing, because this law compares no images.
 class FeatureMarker {
  public:
   FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points);
 
-  /// Returns the marks in both pictures of an observation, with the target at the observation's time. Empty
-  /// if no shape was estimated from the observation. Chords are those measured in these pictures, even if the
-  /// law tracks their angles by optical flow.
+  /// Returns the marks in both pictures of an observation, with the target at the observation's time. Returns
+  /// no marks if no shape was estimated from the observation. Chords are those measured in these pictures,
+  /// even if the law tracks their angles by optical flow.
   [[nodiscard]] std::array<std::vector<FeatureMark>, 2> of(const ServoObservation& observed);
 
  private:

@@ -16,7 +16,7 @@ namespace flexura {
 
 /// Features of chords whose angles are tracked from picture to picture by the optical flow at the chords'
 /// ends. The tracked angles are corrected towards the angles measured in each picture (docs/servo.md, eq.
-/// 25). This is the paper's continuous measurement.
+/// 25). This method is the paper's continuous measurement.
 class FlowFeatures : public ServoFeatures {
  public:
   /// `anchor`: time constant with which a tracked angle approaches the measured angle, s. `whites`: the
@@ -24,8 +24,8 @@ class FlowFeatures : public ServoFeatures {
   FlowFeatures(Arm arm, std::unique_ptr<ChordFeatures> chords, double anchor, std::array<int, 2> whites);
 
   void look(const ServoObservation& observed) override;
-  /// For the observation of the last look(), uses the tracked angles. For other observations, uses the angles
-  /// measured in their pictures.
+  /// Uses the tracked angles for the observation that the last look() received, and for other observations
+  /// the angles measured in their pictures.
   [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Observation, 2>& seen,
                               Eigen::VectorXd& values) override;
   [[nodiscard]] bool predict(const ArmState& state, const std::array<View, 2>& views,
@@ -44,8 +44,8 @@ class FlowFeatures : public ServoFeatures {
   }
 
   /// Angles of one camera's last observation, rad, from u towards v. `carried` and `measured` are the tracked
-  /// and the measured angles of the chords' images. `turns` are the angles' changes since the previous
-  /// observation according to the flow. These changes are NaN where the flow is missing and at the first
+  /// and the measured angles of the chords' images. `turns` are the changes of the angles since the previous
+  /// observation, computed from the flow. `turns` are NaN where the flow is missing, and at the first
   /// observation.
   struct Angles {
     std::vector<double> carried, measured, turns;

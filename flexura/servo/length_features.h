@@ -12,8 +12,8 @@ namespace flexura {
 inline constexpr double stretch_px = 100, stretch_rad = 1;
 
 /// Returns `features` extended by each section's stretch as estimated from the pictures. A stretch of 1
-/// counts as `weight` in the features' unit. The function is meant for features that depend little on
-/// lengths, or not at all, such as angles. If the arm cannot stretch, returns `features` unchanged.
+/// counts as `weight` in the features' unit. Use this function for features that depend little or not at all
+/// on lengths, such as angles. If the arm cannot stretch, returns `features` unchanged.
 [[nodiscard]] std::unique_ptr<ServoFeatures> with_lengths(std::unique_ptr<ServoFeatures> features,
                                                           const Arm& arm, double weight);
 

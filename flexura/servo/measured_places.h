@@ -12,7 +12,7 @@ namespace flexura {
 
 /// Returns the pixels of the arm's points at the shares `shares` of its length. Computes the image of each
 /// point on the estimated shape, and moves it perpendicular to the shape's image onto the measured
-/// centerline. Returns std::nullopt if that is impossible.
+/// centerline. Returns std::nullopt if this is impossible for any point.
 [[nodiscard]] std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& estimate,
                                                               const Observation& seen,
                                                               const std::vector<double>& shares);

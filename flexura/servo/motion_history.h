@@ -39,9 +39,8 @@ class MotionHistory {
 
   [[nodiscard]] bool is_empty() const { return readings_.empty(); }
 
-  /// Returns the value at `time`, s, by linear interpolation between two readings. Before the first reading
-  /// it returns the first one, after the last reading the last one. Returns std::nullopt if there is no
-  /// reading.
+  /// Returns the value at `time`, s, by linear interpolation between two readings. Returns the first reading
+  /// for earlier times, and the last reading for later times. Returns std::nullopt if there is no reading.
   [[nodiscard]] std::optional<Value> at(double time) const {
     if (readings_.empty()) return std::nullopt;
     const auto after = std::ranges::upper_bound(readings_, time, {}, &std::pair<double, Value>::first);

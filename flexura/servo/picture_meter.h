@@ -20,8 +20,8 @@ class PictureMeter {
  public:
   PictureMeter(const RigModel& nominal, const ServoConfig& config);
 
-  /// Returns an observation without an estimated shape. For each picture it has the measured arm, or the
-  /// reason why no arm was found.
+  /// Returns an observation without an estimated shape. For each picture, the observation has the measured
+  /// arm, or the reason why no arm was found.
   [[nodiscard]] ServoObservation measure(const PicturePair& pair);
 
  private:

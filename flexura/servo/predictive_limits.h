@@ -20,7 +20,7 @@ class PredictiveLimits {
   PredictiveLimits(ArmModel model, const ServoConfig& config);
 
   /// Returns the limits. `sent`: last command. `rest`: shape of the arm at rest under this command.
-  /// `by_command`: derivative of this shape with respect to the command. `views`: views of the two cameras.
+  /// `by_command`: derivative of `rest` with respect to the command. `views`: views of the two cameras.
   [[nodiscard]] std::vector<PredictiveLimit> find(const ArmState& sent, const ArmState& rest,
                                                   const Eigen::MatrixXd& by_command,
                                                   const std::array<View, 2>& views) const;

@@ -42,8 +42,8 @@ class RigReader {
   /// its time is in the future.
   [[nodiscard]] Error read();
   /// Requests pictures from the cameras. Returns a new pair of pictures, if there is one. A picture is
-  /// refused if its timestamp is not finite, in the future, or out of order. If a camera did not answer or
-  /// its picture was refused, silence() returns the reason.
+  /// refused if its timestamp is not finite, in the future, or out of order. If a camera did not answer, or
+  /// the reader refused its picture, silence() returns the reason.
   [[nodiscard]] std::optional<PicturePair> newest_pair();
   /// If a camera delivered no picture at the last request, returns the camera's name with the reason;
   /// otherwise "".

@@ -19,7 +19,8 @@ const Table<ServoCameraPrior>& fields_of(const ServoCameraPrior*) {
       Table<ServoCameraPrior>(
           "camera_prior",
           "Prior standard deviations of the camera models. The servo estimates errors of the camera models "
-          "together with the arm's shape. With the value 0, the model counts as exact.")
+          "together with the arm's shape. If a standard deviation is 0, the servo takes the model's value as "
+          "exact.")
           .field("rotation_std", static_cast<double ServoCameraPrior::*>(&ServoCameraPrior::rotation_std),
                  {.meaning =
                       "Standard deviation of a camera's orientation, about each axis of the camera frame.",

@@ -36,7 +36,7 @@ enum class ServoLawKind : std::uint8_t {
   shape_potential,  ///< The estimated shape, by an artificial potential of its error, with dissipation.
 };
 
-/// Returns true if a law compares angles of chords. Optical flow can then track the angles.
+/// Returns true if a law compares angles of chords. Optical flow can track these angles.
 [[nodiscard]] constexpr bool has_chords(ServoLawKind law) {
   return law == ServoLawKind::chords || law == ServoLawKind::potential;
 }
@@ -50,8 +50,8 @@ enum class ServoLawKind : std::uint8_t {
 /// Source of the chord angles.
 enum class ServoMeasure : std::uint8_t {
   picture,  ///< Each picture is measured by itself.
-  flow,     ///< Angle of the previous picture plus its change by optical flow, corrected towards the angle in
-            ///< each new picture.
+  flow,  ///< Sum of the angle in the previous picture and its change by optical flow, corrected towards the
+         ///< angle in each new picture.
 };
 
 /// Source of the derivative of the arm's shape with respect to its drives. The derivatives of features with
@@ -78,7 +78,7 @@ struct ServoGoal {
 /// Default prior of the camera models' errors. The servo estimates these errors from the pictures of the arm
 /// and its base.
 struct ServoCameraPrior : ViewPrior {
-  /// Standard deviations of 0.02 rad, and 2 % of the focal length.
+  /// The default standard deviations are 0.02 rad for rotations and 2 % for the focal length.
   ServoCameraPrior() : ViewPrior{.rotation_std = 0.02, .focal_std = 0.02} {}
 };
 
@@ -104,8 +104,9 @@ struct ServoSettings {
       20;
   double hold_after = 0.3;   ///< Time without an observation after which the arm stops and waits, s.
   double give_up_after = 3;  ///< Time without an observation after which the servo fails, s.
-  /// Unexplained change of the arm's shape at which the servo holds the arm: root mean square along the arm,
-  /// share of its length (DisturbanceWatch). Default: 0.05 for an arm with a dynamic model and the Jacobian
+  /// Change of the arm's shape, not explained by the drives' motion, above which the servo stops the arm. RMS
+  /// along the arm, as a share of its length (DisturbanceWatch). Default:
+  /// 0.05 for an arm with a dynamic model and the Jacobian
   /// `model`; otherwise such changes are not detected.
   std::optional<double> disturbance = {};
   bool follow = false;            ///< Whether the heads turn and zoom to keep the arm in the pictures.
@@ -123,12 +124,13 @@ struct ServoConfig : ServoSettings {
       goals;
   /// Increasing arc lengths of the middles of the arm's bands on the unstretched arm, m.
   std::vector<double> markers = {};
-  double step = 1.0 / 30;   ///< Time between commands, s.
-  bool keeps_steps = true;  ///< Whether to keep ServoResult::steps. Their memory grows with the duration.
+  double step = 1.0 / 30;  ///< Time between commands, s.
+  bool keeps_steps =
+      true;  ///< Whether to keep ServoResult::steps. The memory of these steps grows with the duration.
   std::optional<Drive> drive = {};  ///< Drive for the limiter (LimiterConfig).
   double list_step = 0;             ///< LimiterConfig::list_step, s.
-  /// Last commanded state, if known. Readings of the drives are rounded to motor steps and therefore less
-  /// exact.
+  /// Last commanded state, if known. This state is more exact than readings of the drives, which are rounded
+  /// to motor steps.
   std::optional<ArmState> sent = {};
   std::vector<Obstacle> obstacles = {};
 };
@@ -139,7 +141,7 @@ const std::vector<std::string>& names_of(const ServoLawKind*);
 const std::vector<std::string>& names_of(const ServoMeasure*);
 const std::vector<std::string>& names_of(const ServoJacobian*);
 
-/// Throws std::invalid_argument, with the reason, for values that are invalid whatever the rig.
+/// Throws std::invalid_argument, with the reason, for values that are invalid for every rig.
 void check_servo(const ServoConfig& config);
 
 /// Returns the frame rate of the slower of two cameras, Hz. Within one period of this rate, both cameras take

@@ -27,7 +27,7 @@ class LateErrors {
   /// The mean includes the errors of the last `span` s before the newest one.
   explicit LateErrors(double span) : span_(span) {}
 
-  /// Adds an error. `time`, s, must not be before that of the previous error.
+  /// Adds an error. `time`, s, must not be before the time of the previous error.
   void add(double time, const ServoError& error);
   /// Returns the mean of the recent errors; std::nullopt before the first error.
   [[nodiscard]] std::optional<ServoError> mean() const;

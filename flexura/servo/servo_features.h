@@ -39,7 +39,8 @@ class ServoFeatures {
   ServoFeatures(const ServoFeatures&) = delete;
   ServoFeatures& operator=(const ServoFeatures&) = delete;
 
-  /// Receives new pictures before measured() is called. Features that also use earlier pictures need it.
+  /// Receives new pictures before measured() is called. Features that also use earlier pictures need this
+  /// function.
   virtual void look(const ServoObservation& /*observed*/) {}
   /// Computes the features measured in two observations of an arm whose estimated shape is `estimate`.
   /// Returns false if the features cannot be measured.
@@ -53,10 +54,10 @@ class ServoFeatures {
   [[nodiscard]] virtual bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                                    const ArmState& estimate, const std::array<View, 2>& views,
                                    FeatureError& result) = 0;
-  /// Computes the error of error() for an arm in the state way.seen, with a secant instead of derivatives,
-  /// for large differences. The error is then close to by_state times the difference between the arm's state
-  /// and the target state (docs/control.md, eq. 20a). By default the secant equals the derivatives of
-  /// error().
+  /// Computes the same error as error(), for an arm in the state way.seen. For large differences, by_state is
+  /// a secant instead of the derivatives. The error is then close to by_state times the difference between
+  /// the arm's state and the target state (docs/control.md, eq. 20a). By default the secant equals the
+  /// derivatives of error().
   [[nodiscard]] virtual bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                                     const ShapeError& way, const std::array<View, 2>& views,
                                     FeatureError& result) {

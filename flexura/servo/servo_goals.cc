@@ -72,7 +72,8 @@ std::string ServoGoals::wrong_order(const ServoObservation& observed, const Pict
   if (!other.is_found || other.scale > noise || !is_worse) return "";
   const std::string than = given.is_found ? fmt::format(", not {:.2g} px", given.rms) : "";
   return fmt::format(
-      "the pictures of target {} are in the wrong order: in the opposite order, the residual is {:.2g} px{}",
+      "the pictures of target {} are in the wrong order: in the opposite order, the residual would be {:.2g} "
+      "px{}",
       times_.size(), other.rms, than);
 }
 

@@ -34,8 +34,8 @@ class ServoGoals {
   [[nodiscard]] const std::string& problem() const { return problem_; }
   /// Returns the time of the last target, s from the servo's start.
   [[nodiscard]] double last() const { return times_.back(); }
-  /// Returns the target at a time, linearly interpolated between the given targets. Before the first target,
-  /// it returns the first one.
+  /// Returns the target at a time, linearly interpolated between the given targets. For a time before the
+  /// first target, returns the first target.
   [[nodiscard]] TargetShape at(double time) const;
 
  private:

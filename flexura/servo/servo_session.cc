@@ -90,7 +90,7 @@ class Session {
     result_.first = observer_.first(), result_.last = observer_.last();
     if (result_.last) result_.sigma = observer_.sigma_of_last();
     if (result_.missed_steps > 0)
-      watcher_.reported(rig_.now(), fmt::format("{} control steps of {:.4g} s were missed",
+      watcher_.reported(rig_.now(), fmt::format("{} control steps of {:.4g} s were skipped",
                                                 result_.missed_steps, config_.step));
     tally_->finish(result_);
     return std::move(result_);

@@ -145,8 +145,8 @@ const Table<HeadCommand>& fields_of(const HeadCommand*) {
   static const auto table =
       Table<M>("flexura.HeadCommand", "Command of a camera's head.")
           .field("camera", &M::camera, {.meaning = "Name of the camera."})
-          .field("pan", &M::pan, {.meaning = "Pan, rad, to the camera's left."})
-          .field("tilt", &M::tilt, {.meaning = "Tilt, rad, upwards."})
+          .field("pan", &M::pan, {.meaning = "Pan, rad; positive to the camera's left."})
+          .field("tilt", &M::tilt, {.meaning = "Tilt, rad; positive upwards."})
           .field("zoom", &M::zoom, {.meaning = "Zoom, as a ratio or as a motor position."});
   return table;
 }

@@ -25,7 +25,8 @@ struct TrueShape {
   ServoError error;                    ///< Error relative to the target.
 };
 
-/// One command of a servo, and its inputs. The log has it as flexura.ServoStep on the topic /servo/steps.
+/// One command of a servo, and its inputs. The log contains it as flexura.ServoStep on the topic
+/// /servo/steps.
 struct ServoStep {
   double time = 0;                  ///< Time of the command, s.
   std::optional<double> seen_at;    ///< Time of the observation used, s; empty before the first observation.
@@ -35,7 +36,7 @@ struct ServoStep {
   std::vector<HeadCommand> heads;   ///< Commands of the heads in this step.
   std::vector<double> lengths;      ///< Nominal lengths of the unstretched sections, m.
   std::optional<ServoError> error;  ///< Error of the observed shape relative to the target.
-  /// True shape at the time of the observation. The simulator of the rig adds it; the servo does not know it.
+  /// True shape at the time of the observation. The simulator adds this shape; the servo does not know it.
   std::optional<TrueShape> truth;
   /// Half the squared error of the law. This value is a Lyapunov function if the arm follows its commands.
   /// The unit of this value is rad^2 for the laws `shape` and `potential`, otherwise px^2 (docs/servo.md).

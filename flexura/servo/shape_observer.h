@@ -16,8 +16,8 @@
 
 namespace flexura {
 
-/// State observer of the arm. The observer estimates the shape from measured pictures and the drives' motion
-/// after them. The observer also measures the time without observations.
+/// State observer of the arm. The observer estimates the shape from measured pictures and from the motion of
+/// the drives since these pictures. The observer also measures how long there has been no observation.
 class ShapeObserver {
  public:
   /// `rig` reports the drives' motion. `rig` and `nominal` must outlive this object.
@@ -30,17 +30,17 @@ class ShapeObserver {
   /// last() becomes this observation. Returns false if it finds no shape, for example if a picture shows no
   /// arm.
   bool observe(const std::shared_ptr<ServoObservation>& observed, double now);
-  /// Estimates the shape from only these pictures, without a prediction. Resets the tracker before and
-  /// afterwards.
+  /// Estimates the shape from only these pictures, without a prediction. Resets the tracker before and after
+  /// the estimate.
   void estimate_alone(ServoObservation& observed);
   /// Returns the shape estimated from the observation's measurements under the assumption that `views` are
   /// exact.
   [[nodiscard]] ShapeEstimate with_nominal_views(const ServoObservation& observed,
                                                  const std::array<View, 2>& views) const;
 
-  /// Returns the first observation with a shape; null before it.
+  /// Returns the first observation with a shape; null before there is one.
   [[nodiscard]] const std::shared_ptr<const ServoObservation>& first() const { return first_; }
-  /// Returns the newest observation with a shape; null before the first.
+  /// Returns the newest observation with a shape; null before there is one.
   [[nodiscard]] const std::shared_ptr<const ServoObservation>& last() const { return last_; }
   /// Returns the time since the last observation with a shape, s.
   [[nodiscard]] double blind_for(double now) const { return now - seen_since_; }
@@ -56,13 +56,13 @@ class ShapeObserver {
   /// The result includes the excitation of the oscillation modes by the motion.
   [[nodiscard]] SwingPath path_until(double time, const std::vector<SwingMode>& modes) const;
   /// Returns the standard deviation of the last shape due to the pictures' noise: root mean square along the
-  /// arm, share of its length. The value does not include errors of cameras without a prior; these are equal
-  /// in every picture.
+  /// arm, share of its length. The value does not include errors of cameras without a prior, because these
+  /// errors are equal in every picture.
   [[nodiscard]] double sigma() const;
   /// Returns the standard deviation of the last shape if only the last pictures are used. The filter behind
   /// sigma() assumes independent errors in successive pictures. For an arm at rest, the errors are equal in
-  /// all pictures and do not average out. Then sigma() is several times too small if camera errors are
-  /// estimated, and sigma_of_last() is correct.
+  /// all pictures and do not average out. In this case, if camera errors are estimated, sigma() is several
+  /// times too small, but sigma_of_last() is correct.
   [[nodiscard]] double sigma_of_last() const;
 
  private:

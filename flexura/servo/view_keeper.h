@@ -11,7 +11,7 @@
 
 namespace flexura {
 
-/// Keeps an arm in the pictures of two cameras by commands to their heads.
+/// Keeps an arm in the pictures of two cameras by commands to the cameras' heads.
 class ViewKeeper {
  public:
   ViewKeeper(const RigModel& nominal, const std::array<std::size_t, 2>& cameras);

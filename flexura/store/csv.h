@@ -17,7 +17,7 @@ class CsvText {
   void cell(double value);
   /// Adds a cell for each value.
   void cells(std::span<const double> values);
-  /// Ends the row. The next cell begins a new row. This function must also be called after the last row.
+  /// Ends the row. The next cell begins a new row. Call this function after the last row too.
   void end_row();
 
   /// Returns all rows so far, as a reference into this object.

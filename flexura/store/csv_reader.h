@@ -15,10 +15,11 @@ struct NumberTable {
 };
 
 /// Parses CSV (RFC 4180, with "\n" or "\r\n"): a line of names, then lines with one number per name. Skips
-/// blank lines. Throws InputError (source:line:column, with the column in characters) with up to 20 errors.
+/// blank lines. Throws InputError with up to 20 errors (source:line:column, with the column in characters).
+/// There are these errors:
 ///
 /// - Header: is missing, or has an empty or repeated name.
-/// - Values: a row has too few or too many, or a value is not a finite number.
+/// - Values: a row has too few or too many values, or a value is not a finite number.
 /// - Separators: there are semicolons or tabs between columns, or an unclosed quote.
 /// - Size: the table has more than 10^6 rows.
 [[nodiscard]] NumberTable parse_csv(std::string_view text, const std::string& source);

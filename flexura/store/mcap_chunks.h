@@ -15,22 +15,22 @@ namespace flexura {
 /// Largest decompressed size of a compressed chunk, bytes. The writer does not compress larger chunks.
 inline constexpr std::size_t mcap_most_chunk = std::size_t{128} << 20;
 
-/// Gives access to the messages in a log file and in its compressed chunks. A chunk is decompressed when one
-/// of its messages is read, and keeps the last few chunks. Several threads may read at once.
+/// Gives access to the messages in a log file and in its compressed chunks. Decompresses a chunk when one of
+/// its messages is read, and keeps the last few decompressed chunks. Several threads may read at once.
 class McapChunks {
  public:
   /// `file`: the log, which must outlive this object. `name`: name of the log in errors.
   McapChunks(std::span<const std::byte> file, std::string name) : file_(file), name_(std::move(name)) {}
 
-  /// Chunk number of messages that are not compressed: those are in the file itself.
+  /// Chunk number of uncompressed messages, which are read directly from the file.
   static constexpr std::uint32_t plain = 0;
 
   /// Adds a chunk of zstd frames with `size` bytes of content. Returns the number of the chunk, from 1.
   std::uint32_t add(std::span<const std::byte> frames, std::size_t size);
-  /// Returns the content of a chunk. Throws std::runtime_error if it does not decompress to the size given to
-  /// add().
+  /// Returns the content of a chunk. Throws std::runtime_error if the chunk does not decompress to the size
+  /// given to add().
   [[nodiscard]] std::shared_ptr<const ByteBuffer> content(std::uint32_t chunk) const;
-  /// Returns a part of a chunk's content or of the file. The part must be within it. Throws
+  /// Returns a part of a chunk's content or of the file. The part must be within this content. Throws
   /// std::runtime_error if the chunk does not decompress.
   [[nodiscard]] std::string text(std::uint32_t chunk, std::size_t offset, std::size_t size) const;
 

@@ -42,7 +42,7 @@ class McapCursor {
   /// Takes a text preceded by its length.
   std::string take_text();
 
-  /// Throws the error `what` at the current position. Another overload takes the position `at`.
+  /// Throws the error `what` at the current position, or at the position `at`.
   [[noreturn]] void fail(const std::string& what) const { fail(what, position_); }
   [[noreturn]] void fail(const std::string& what, std::size_t at) const;
 

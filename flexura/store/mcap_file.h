@@ -10,7 +10,7 @@ namespace flexura {
 /// A new file to which bytes are appended. A new file never replaces an existing file.
 class AppendFile {
  public:
-  /// Creates the file. Throws std::system_error with the path if it already exists, its folder does not
+  /// Creates the file. Throws std::system_error with the path if the file already exists, its folder does not
   /// exist, or access is denied.
   explicit AppendFile(std::filesystem::path path);
   ~AppendFile();

@@ -19,15 +19,16 @@ namespace flexura {
 struct McapMessage {
   const McapChannel* channel;
   std::uint64_t log_time;  ///< Simulated time, ns.
-  std::uint32_t sequence;  ///< Number of the message, counted by the writer; it may wrap.
+  std::uint32_t sequence;  ///< Number of the message, counted by the writer, modulo 2^32.
   std::uint32_t chunk;     ///< Number of the compressed chunk with the message's data, or McapChunks::plain.
   const McapChunks* chunks;  ///< Chunks of the reader.
   std::size_t offset;        ///< Start of the data in the chunk or in the file.
   std::size_t size;          ///< Size of the data, bytes.
 
-  /// Returns the data as written: JSON in the logs of runs. Decompresses the chunk unless it is one of the
-  /// last used ones. Reading messages in the file's order is therefore fast. Several threads may call it at
-  /// once. Throws std::runtime_error if the file has changed since it was opened.
+  /// Returns the data as written: JSON in the logs of runs. Decompresses the message's chunk, unless this
+  /// chunk is among the last few that were used. Reading messages in the file's order is therefore fast.
+  /// Several threads may call this function at once. Throws std::runtime_error if the file has changed since
+  /// it was opened.
   [[nodiscard]] std::string text() const { return chunks->text(chunk, offset, size); }
 };
 
@@ -42,14 +43,15 @@ struct McapDamage {
   std::string what;                ///< Error message, with the byte in the log.
 };
 
-/// Reads a whole log of this or another program. An McapReader reads the data section of the log from start
-/// to end. Chunks may be plain or compressed by zstd. Memory grows only with the number of messages: plain
-/// data remain in the mapped file, and only a few decompressed chunks are kept. If the writer of a log was
-/// killed, the log is read up to its last complete chunk, and `truncated` is set. Constructors throw
-/// std::runtime_error with the log's name and the byte of the error. Errors are a file that is not a log, a
-/// record that does not fit, a wrong CRC, a message without channel, and an unknown compression. Further
-/// errors are a chunk that does not decompress to its stated size, and a size above mcap_most_chunk.
-/// Compressed chunks must not have more than 64 MiB and 256 times the file's size in total.
+/// Reads a whole log that Flexura or another program wrote. An McapReader reads the data section of the log
+/// from start to end. Chunks may be plain or compressed by zstd. Memory grows only with the number of
+/// messages: plain data remain in the mapped file, and only a few decompressed chunks are kept. If the writer
+/// of a log was killed, the log is read up to its last complete chunk, and `truncated` is set. Constructors
+/// throw std::runtime_error with the log's name and the byte of the error. Errors are a file that is not a
+/// log, a record that extends beyond its chunk or the file, a wrong CRC, a message without channel, and an
+/// unknown compression. Further errors are a chunk that does not decompress to its stated size, and a size
+/// above mcap_most_chunk. Compressed chunks must not have more than 64 MiB and 256 times the file's size in
+/// total.
 class McapReader {
  public:
   /// Throws std::system_error if the file cannot be read.

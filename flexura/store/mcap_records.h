@@ -41,8 +41,8 @@ inline constexpr std::size_t mcap_record_header = 9;
 /// Length of the footer's content: starts of the summary and its offsets (8 + 8), and the summary's CRC (4).
 inline constexpr std::size_t mcap_footer_length = 20;
 
-/// Name of the compression of chunks by Zstandard. The name of plain chunks is empty. A chunk's CRC and
-/// uncompressed size are those of the uncompressed records.
+/// Name of the compression of chunks by Zstandard. The name of plain chunks is empty. The CRC and the
+/// uncompressed size of a chunk refer to its uncompressed records.
 inline constexpr std::string_view mcap_zstd = "zstd";
 
 /// Format of a channel's messages.

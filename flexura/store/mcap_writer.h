@@ -29,8 +29,8 @@ class McapWriter {
     bool compress = true;
   };
 
-  /// Creates the file. Never overwrites an existing file. Throws std::system_error with the path if it
-  /// already exists or cannot be created, std::invalid_argument for a chunk size out of range.
+  /// Creates the file. Never overwrites an existing file. Throws std::system_error with the path if the file
+  /// already exists or cannot be created, and std::invalid_argument for a chunk size out of range.
   explicit McapWriter(const std::filesystem::path& path) : McapWriter(path, Config{}) {}
   McapWriter(const std::filesystem::path& path, Config config);
   /// Closes the log and ignores failures. Call close() to detect failures.

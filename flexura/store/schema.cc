@@ -301,7 +301,8 @@ class Page {
       const bool is_in_part = has_part && part->table->find(field.name) != nullptr;
       if (!is_common && !is_in_part) own.push_back(&field);
     }
-    const std::string also = has_part ? fmt::format(" This table also has the keys of {}.", part->link) : "";
+    const std::string also =
+        has_part ? fmt::format(" This table also accepts the keys of {}.", part->link) : "";
     const std::string rows = rows_of(own);
     text_ += fmt::format("\n{}{}\n{}{}", info.meaning, also, rows.empty() ? "" : "\n", rows);
     for (const FieldInfo* field : own) {

@@ -131,7 +131,7 @@ TEST(MarkdownReference, DescribesFieldsOnceThatSeveralTablesHave) {
   EXPECT_THAT(page, HasSubstr("## `[[toy]]`\n\nKeys of every kind:\n"));
   EXPECT_THAT(page, HasSubstr("| `speed` | number, [0, 3e6] | 2000000 | Its speed. |\n"));
   EXPECT_EQ(page.find("Its size."), page.rfind("Its size."));
-  EXPECT_THAT(page, HasSubstr("Rolls. This table also has the keys of [`[place]`](#place).\n"));
+  EXPECT_THAT(page, HasSubstr("Rolls. This table also accepts the keys of [`[place]`](#place).\n"));
   EXPECT_EQ(page.find("| `x` |"), page.rfind("| `x` |"));
 }
 

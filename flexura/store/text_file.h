@@ -8,7 +8,7 @@
 namespace flexura {
 
 /// Returns true if nothing exists at a path. A path that cannot be checked, such as a link to itself, counts
-/// as existing. The attempt to open it then reports the reason.
+/// as existing. A later attempt to open such a path reports the reason.
 [[nodiscard]] bool is_missing(const std::filesystem::path& path);
 
 /// Returns the bytes of a file or of a pipe. Throws InputError if it cannot be read or has more than

@@ -11,7 +11,8 @@ namespace flexura {
 /// version of libzstd is equal. Throws std::runtime_error if libzstd fails.
 [[nodiscard]] std::vector<std::byte> zstd(std::span<const std::byte> bytes);
 
-/// Bytes in memory that are not initialised. Memory that was never written takes no space.
+/// Bytes in memory that are not initialised. The system provides physical memory only for bytes that are
+/// written.
 struct ByteBuffer {
   std::unique_ptr<std::byte[]> start;  ///< May be null if `size` is 0.
   std::size_t size = 0;                ///< In bytes.
@@ -21,8 +22,8 @@ struct ByteBuffer {
 };
 
 /// Returns the content of frames of Zstandard that must decompress to exactly `size` bytes. The function
-/// never writes more bytes. Before allocating memory, the function refuses a size that the frames cannot
-/// contain. Throws std::runtime_error with the reason for invalid frames.
+/// never writes more than `size` bytes. Before allocating memory, the function refuses a size that the frames
+/// cannot contain. Throws std::runtime_error with the reason for invalid frames.
 [[nodiscard]] ByteBuffer unzstd(std::span<const std::byte> frames, std::size_t size);
 
 }  // namespace flexura

@@ -19,15 +19,16 @@
 
 namespace flexura {
 
-/// One `[[task]]` of a file, of any kind. The header that declares the configuration of a kind also declares
-/// its table of fields and the following functions, which the functions of this header call:
+/// Configuration of one `[[task]]` of a file, of any kind. The header that declares the configuration of a
+/// kind also declares its table of fields and the following functions, which the functions of this header
+/// call:
 ///   void check_keys(const KIND&, const Setup&, const std::string& path, Reader&);
 ///   std::unique_ptr<TaskRunner> runner_of(const KIND&, const Setup&, TaskLabel);
 /// Two further functions are optional:
 ///   void read_files(KIND&, const Setup&, const Node& written, const std::string& path,
 ///                   std::vector<Problem>&);
 ///   LogTables log_tables(const KIND*);
-/// Summaries list the kinds in this order.
+/// Summaries list the kinds of tasks in the order of this list.
 using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask, StudyTask,
                                 CalibrateTask, ServoTask, DynamicsTask>;
 

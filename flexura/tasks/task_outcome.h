@@ -12,7 +12,7 @@ namespace flexura {
 struct TaskOutcome {
   std::string task;        ///< Name of the task.
   std::string kind;        ///< Kind of the task, such as "servo".
-  std::string noun;        ///< Noun for such tasks in a total, such as "servo" or "motion".
+  std::string noun;        ///< Noun for tasks of this kind in a total, such as "servo" or "motion".
   std::string success;     ///< Verb for successful tasks in a total, such as "converged".
   bool is_reached = true;  ///< Whether the task was successful.
   std::string text;        ///< Result in one line without the name: "converged in 1.9 s, ...".

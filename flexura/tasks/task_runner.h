@@ -51,7 +51,7 @@ struct TaskPlan {
 /// Model of a rig during a run, which calibrations update.
 struct NominalRig {
   RigModel model;         ///< Model from the file, or from a calibration.
-  bool is_found = false;  ///< Whether the default method has calibrated mounts and lenses.
+  bool is_found = false;  ///< Whether a calibration by the default method has determined mounts and lenses.
 };
 
 /// Resources for a task that the rig performs.
@@ -73,9 +73,10 @@ struct TaskEnd {
       failure;  ///< Why the run ends with this task; std::nullopt if the run continues.
 };
 
-/// Estimated work of a task, for the display of progress. Only the ratios between its parts matter.
+/// Estimated work of a task, for the display of progress. Only the ratios between the parts of the work
+/// matter.
 struct TaskWork {
-  double duration = 0;    ///< Duration of the task, s. The rig's part of the work depends on it.
+  double duration = 0;    ///< Duration of the task, s, to which the work of the rig is related.
   double simulating = 0;  ///< Computing time of TaskRunner::simulate, s.
   double performing = 0;  ///< Computing time of TaskRunner::perform, s.
   double finishing = 0;   ///< Computing time of TaskRunner::finish, s.
@@ -106,7 +107,7 @@ class TaskRunner {
   [[nodiscard]] virtual TaskWork work() const = 0;
 
   /// Returns the plan for an arm in the state `from`. `done`: the performed motion, or null if it is not
-  /// known. With null, the plan contains the largest possible motion.
+  /// known. If `done` is null, the plan contains the largest possible motion.
   [[nodiscard]] virtual TaskPlan plan(const ArmState& from, const MotionPtr& done) const = 0;
 
   /// For tasks with TaskMotionSource::simulated: simulates the task, which begins at `start` (s).
@@ -123,12 +124,12 @@ class TaskRunner {
   virtual void add_caveats(const ArmState& /*from*/, const std::string& /*ended_by*/,
                            SafetyReport& /*report*/) const {}
 
-  /// For tasks with TaskMotionSource::simulated: logs the task's results up to `time` (s). Called when the
-  /// run has reached this time.
+  /// For tasks with TaskMotionSource::simulated: logs the task's results up to `time` (s). The run calls this
+  /// function when it has reached `time`.
   virtual void publish_up_to(double /*time*/, RunLog& /*log*/) {}
 
-  /// Writes the task's files into the results folder. `is_cancelled`: the run was cancelled; remaining
-  /// computations are then skipped.
+  /// Writes the task's files into the results folder. If the run was cancelled (`is_cancelled`), skips the
+  /// remaining computations.
   virtual void finish(const std::filesystem::path& /*results*/, bool /*is_cancelled*/,
                       Progress& /*progress*/) {}
 
@@ -139,7 +140,7 @@ class TaskRunner {
   /// Returns the name of the list for tasks of this kind in the summary, such as "servos"; "" if there is no
   /// list.
   [[nodiscard]] virtual std::string_view summary_list() const { return ""; }
-  /// Returns the task's item in that list; std::nullopt without a result.
+  /// Returns the task's item in its kind's list in the summary; std::nullopt without a result.
   [[nodiscard]] virtual std::optional<Node> summary() const { return std::nullopt; }
   /// Returns the targets of the task for the report's 3D view, in the order of time. `motion`: commanded
   /// motion. Times count from the task's start.

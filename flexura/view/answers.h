@@ -16,8 +16,8 @@ namespace flexura {
 [[nodiscard]] Node point_answer(const Backbone& backbone, double s);
 /// Returns the answer to the request `backbone`.
 [[nodiscard]] Node backbone_answer(const Backbone& backbone);
-/// Returns the answer to the request `tip`: the solution, and the reason why the arm does not move to it, or
-/// "".
+/// Returns the answer to the request `tip`: the solution, and the reason why the arm does not move to the
+/// solution, or "".
 [[nodiscard]] Node tip_answer(const InverseResult& found, const std::string& danger);
 /// Returns [[bend_x, bend_y], ...] without negative zeros.
 [[nodiscard]] Node bends_answer(const ArmState& state);

@@ -47,7 +47,7 @@ PictureLayers layers_of(const CalibrationPicture& picture) {
 
 std::string caption(const CalibrationDecisionMessage& decision) {
   if (decision.step)
-    return fmt::format("{} of {}: {:.4g} {} off; {}", *decision.step, decision.camera.value_or(""),
+    return fmt::format("{} of {}: offset {:.4g} {}; {}", *decision.step, decision.camera.value_or(""),
                        decision.offset.value_or(0), decision.unit.value_or(""), decision.next);
   const std::string known = decision.found
                                 ? fmt::format("standard deviation of the angle between the axes: {:.4f} deg",

@@ -91,7 +91,7 @@ TEST_F(CalibrationView, ShowsWhatIsMeasuredAndDecidedWhileARunGoesOn) {
     }
   }
   EXPECT_THAT(reported, Contains(HasSubstr("horizontal orientation of front: ")));
-  EXPECT_THAT(reported, Contains(HasSubstr("px off; pan by ")));
+  EXPECT_THAT(reported, Contains(HasSubstr(" px; pan by ")));
   EXPECT_GT(both, 3U);
   EXPECT_THAT(overlays_of(last), IsEmpty()) << "with the calibration its measurements are gone";
   EXPECT_EQ(text_in(last, "title"), "");

@@ -38,11 +38,11 @@ const Table<Quantity>& fields_of(const Quantity*);
 [[nodiscard]] Node scene_node(const ViewedRig& rig);
 
 /// Returns CONTROLS of the protocol (docs/viewer-protocol.md): the controls with their ranges according to
-/// the model, and the tasks. The range of a tendon is computed from the bend limits of its sections. A
-/// section without a limit counts as limited to a full turn.
+/// the model, and the tasks. The range of a tendon is computed from the bend limits of its sections. For a
+/// section without a bend limit, the range assumes a limit of a full turn.
 [[nodiscard]] Node controls_node(const ViewedRig& rig);
-/// Returns CONTROLS for a live rig. CONTROLS includes the actuators and switches for clients, if there are
-/// any. Coupled tendons are omitted if there are actuators.
+/// Returns CONTROLS for a live rig. The answer includes the rig's actuators and switches, if there are any.
+/// If there are actuators, the key `tendons` of the answer is null.
 [[nodiscard]] Node live_controls_node(const ViewedRig& rig);
 
 }  // namespace flexura

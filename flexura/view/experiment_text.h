@@ -21,7 +21,7 @@ struct RigInstant {
 };
 
 /// Returns the rig's experiment with `instant` as its start: the arm's initial command and the camera axes'
-/// measured positions. Differences between truth and model at the start remain.
+/// measured positions. Initial differences between the true rig and its model do not change.
 [[nodiscard]] Experiment started_at(const ViewedRig& rig, const RigInstant& instant);
 
 /// Returns the errors in the text of an experiment file, with their lines and columns; empty if the text is
@@ -29,14 +29,14 @@ struct RigInstant {
 [[nodiscard]] std::vector<Problem> experiment_problems(const std::string& text);
 
 /// Returns the text of an experiment for editing: `file_text` if this text alone defines the experiment,
-/// otherwise a text with every value.
+/// otherwise a complete text with every value.
 [[nodiscard]] std::string editable_text(const std::string& file_text, const Experiment& experiment);
 
 /// Appends a task `move` to a given state to `text`, the text of the rig's experiment, and returns the
-/// result. If that is not possible in `text`, returns a text with every value.
+/// result. If `text` cannot be changed in this way, returns a complete text with every value.
 [[nodiscard]] std::string with_move(const std::string& text, const ViewedRig& rig, const ArmState& to);
 /// Changes the initial axis positions of one camera in `text`, the text of the rig's experiment, and returns
-/// the result. If that is not possible in `text`, returns a text with every value.
+/// the result. If `text` cannot be changed in this way, returns a complete text with every value.
 [[nodiscard]] std::string with_camera_start(const std::string& text, const ViewedRig& rig, std::size_t camera,
                                             const CameraReading& reading);
 

@@ -37,7 +37,7 @@ struct AlongCurve {
   std::vector<double> values;
 };
 
-/// Name and colour of an item, for example a true arm, that several drawings show.
+/// Name and colour of an item that several drawings show, for example the true arm.
 struct ExtraName {
   const char *id, *label;
   const char* color;  ///< "#rrggbb"
@@ -47,7 +47,7 @@ inline constexpr ExtraName true_arm{"truth", "True", "#51cf66"};
 
 struct Extras {
   double time = 0;          ///< Time, s.
-  std::string title, text;  ///< Title of the drawings, and their status; one line each.
+  std::string title, text;  ///< Title of the drawings in one line, and their status in one line.
   std::vector<GhostArm> ghosts;
   std::vector<PictureLayers> overlays;
   std::string along_label, along_unit;  ///< Label and unit of all curves.
@@ -62,11 +62,11 @@ struct Extras {
 [[nodiscard]] Node line_layer(const std::string& id, const std::string& color,
                               const std::vector<Eigen::Vector2d>& points, bool is_dashed = false);
 
-/// Properties of a layer with a visibility button.
+/// Properties of a layer that the user can hide by a button.
 struct LayerMark {
   std::string id, label;
   std::string color;  ///< "#rrggbb"
-  std::string of;     ///< Ghost whose visibility button also hides this layer, or "".
+  std::string of;     ///< `id` of the ghost that is hidden together with this layer, or "".
 };
 /// Returns crosses or separate lines on a picture, rounded to 0.01 px.
 [[nodiscard]] Node points_layer(const LayerMark& mark, const std::vector<Eigen::Vector2d>& points);

@@ -20,10 +20,10 @@
 
 namespace flexura {
 
-/// Connects a server and a viewer. Receives events on the server's thread without blocking, and passes them
-/// to the viewer on a separate thread. While a client is connected, the viewer's thread advances the viewer
-/// 60 times a second. Errors in the viewer's thread are reported to the affected clients and do not stop the
-/// thread.
+/// Passes messages between a server and a viewer. Receives events on the server's thread without blocking,
+/// and passes them to the viewer on a separate thread. While a client is connected, the viewer's thread
+/// advances the viewer 60 times a second. Errors in the viewer's thread are reported to the affected clients
+/// and do not stop the thread.
 class FrontDoor : public Host {
  public:
   struct Config {
@@ -38,10 +38,11 @@ class FrontDoor : public Host {
   explicit FrontDoor(Config config);
   ~FrontDoor() override;
 
-  /// Starts the viewer. Must be called once, before or after the first client connects. `messenger` must
-  /// exist until stop(). Rethrows exceptions of the viewer's construction.
+  /// Starts the viewer. The caller must call this function once, before or after the first client connects.
+  /// `messenger` must exist until stop(). Rethrows exceptions of the viewer's construction.
   void start(ViewStart start, Messenger& messenger);
-  /// Stops the viewer: cancels a run and waits for active jobs. Afterwards the messenger is no longer used.
+  /// Stops the viewer: cancels a run and waits for active jobs. After this call, the front door no longer
+  /// uses the messenger.
   void stop();
 
   void opened(ClientId client) override;

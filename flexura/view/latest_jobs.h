@@ -13,9 +13,9 @@
 
 namespace flexura {
 
-/// Requests of clients of which only the newest is relevant. For each client and kind of request, at most one
-/// request is being answered and at most one waits. All calls must be from one thread. Answers are computed
-/// on another thread.
+/// Queue for requests of which only the newest of a client and kind is relevant. For each client and kind of
+/// request, at most one request is being answered and at most one waits. All calls must be from one thread.
+/// Answers are computed on another thread.
 class LatestJobs {
  public:
   /// A client and a kind of request.
@@ -30,7 +30,7 @@ class LatestJobs {
 
   LatestJobs(Background& background, Lane lane) : background_(background), lane_(lane) {}
 
-  /// Adds a request. If a request with an equal key is waiting, that request is refused.
+  /// Adds a request. Refuses the waiting request with an equal key, if there is one.
   void ask(const Key& key, Job job, Reply reply);
   /// Removes the waiting requests of a client.
   void close(ClientId client);

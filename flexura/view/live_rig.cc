@@ -24,7 +24,7 @@ constexpr double rod_interval = 0.0049;
 
 // The rig's own cameras are never asked for frames: pictures are rendered from value_shot elsewhere.
 Picture no_picture(const Shot& /*shot*/) {
-  throw std::logic_error("the live rig does not take pictures by itself");
+  throw std::logic_error("the live rig itself does not render pictures");
 }
 
 ShapeConfig shape_of(const ArmState& state) {

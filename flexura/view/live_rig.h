@@ -23,7 +23,7 @@ namespace flexura {
 /// true state.
 class LiveRig {
  public:
-  /// Starts in the initial state of the experiment. `now`: time of the external clock, s.
+  /// Makes a rig in the initial state of the experiment. `now`: time of the external clock, s.
   LiveRig(ViewedRigPtr rig, double now);
 
   /// Restores the initial state of the experiment.
@@ -41,8 +41,8 @@ class LiveRig {
   void go_to(double now) { simulated_->clock().wait_until(rig_time(now)); }
   /// Moves the rig to the time `now` (s) without simulation, while no client is connected.
   void rest_until(double now) { start_ += std::max(0.0, now - this->now()); }
-  /// Must be called before the rig advances to the time `next` (s). If the arm is a rod, skips all but the
-  /// last 0.1 s before `next`, because the simulation of a rod may be too slow to catch up.
+  /// Call this function before the rig advances to the time `next` (s). If the arm is a rod, skips all but
+  /// the last 0.1 s before `next`, because the simulation of a rod may be too slow to catch up.
   void skip_to(double next);
   /// Returns the recent speed of the rig's time relative to real time, if the simulation is slower than real
   /// time. Otherwise returns std::nullopt.
@@ -56,8 +56,8 @@ class LiveRig {
   /// Returns the true backbone at `time` (s). The time may be in the future, for motions that are already
   /// commanded.
   [[nodiscard]] Backbone backbone(double time) { return simulated_->arm().backbone(rig_time(time)); }
-  /// Returns the backbone at rest for these bends. If the arm has these bends now, returns the current
-  /// backbone. Throws std::runtime_error if a rod has no equilibrium for these bends.
+  /// Returns the backbone at rest for these bends. If the arm's present bends are equal to these bends,
+  /// returns the present backbone. Throws std::runtime_error if a rod has no equilibrium for these bends.
   [[nodiscard]] Backbone at_rest(const ArmState& state);
   /// Returns the backbone of a rod at rest, for pictures; null if the arm is not a rod or has no equilibrium.
   [[nodiscard]] std::shared_ptr<const Backbone> rod_at_rest(const ArmState& state);
@@ -74,8 +74,8 @@ class LiveRig {
   /// changes nothing and throws std::runtime_error. Throws std::invalid_argument for an invalid push.
   void push(const std::optional<PlantPush>& push);
   [[nodiscard]] bool is_pushed() { return simulated_->arm().plant().pushed(rig_time(now())).has_value(); }
-  /// Returns whether the arm is pushed or oscillates. Then the arm's motion differs from the commanded
-  /// motion.
+  /// Returns whether the arm is pushed or oscillates. In both cases the arm's motion differs from the
+  /// commanded motion.
   [[nodiscard]] bool is_yielding();
   /// Returns a one-line warning about the present state of the arm, or "".
   [[nodiscard]] std::string warning() { return simulated_->arm().plant().warning(rig_time(now())); }

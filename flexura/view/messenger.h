@@ -8,8 +8,8 @@
 
 namespace flexura {
 
-/// Sends messages to clients: a server, or a replacement in a test. All methods can be called from any
-/// thread.
+/// Interface for sending messages to clients, implemented by a server or by a replacement in a test. All
+/// methods can be called from any thread.
 class Messenger {
  public:
   virtual ~Messenger() = default;
@@ -17,7 +17,7 @@ class Messenger {
   Messenger(const Messenger&) = delete;
   Messenger& operator=(const Messenger&) = delete;
 
-  /// These functions are as Server::send, Server::post and Server::has_room.
+  /// These functions do the same as Server::send, Server::post and Server::has_room.
   virtual void send(ClientId client, std::string text) = 0;
   virtual void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message) = 0;
   [[nodiscard]] virtual bool has_room(ClientId /*client*/) const { return true; }

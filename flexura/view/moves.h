@@ -25,8 +25,8 @@ namespace flexura {
 struct TendonPull {
   std::vector<double> displacements;  ///< Displacement of each tendon, m.
 };
-/// Returns the displacements that a client requests for a rig's actuators. Throws ViewRefusal if their number
-/// is wrong, or if a displacement is out of range.
+/// Returns the displacements that a client requests for a rig's actuators. Throws ViewRefusal if the number
+/// of displacements is wrong, or if a displacement is out of range.
 [[nodiscard]] TendonPull requested_pull(const std::vector<PulledTendon>& actuators,
                                         const std::vector<double>& displacements);
 

@@ -26,7 +26,7 @@ inline constexpr std::uint32_t state_stream = 0;
 }
 
 /// Renders a session's pictures outside the session's thread. A camera's next picture is rendered only after
-/// its previous picture is complete. If a picture is certain to equal the previous one, it is not rendered
+/// its previous picture is complete. A picture that is certainly equal to the previous one is not rendered
 /// again.
 class PictureRoom {
  public:

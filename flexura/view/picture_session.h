@@ -25,8 +25,8 @@ class PictureSession : public Session {
  protected:
   PictureSession(const ViewedRigPtr& rig, Messenger& messenger, Background& background);
 
-  /// Handles the requests that are common to both kinds of session. The handlers of both kinds derive from
-  /// this struct.
+  /// Handles the requests that live rigs and recordings have in common. The request handlers of live rigs and
+  /// of recordings derive from this struct.
   struct Taker {
     PictureSession& pictures;
     ClientId client;
@@ -53,7 +53,7 @@ class PictureSession : public Session {
   [[nodiscard]] Background& background() { return background_; }
   [[nodiscard]] ImageStreams& streams() { return streams_; }
   [[nodiscard]] PictureRoom& room() { return room_; }
-  /// Returns a pointer that expires with this session, for jobs that may finish later.
+  /// Returns a weak pointer that expires when this session ends, for jobs that may finish after the session.
   [[nodiscard]] std::weak_ptr<const bool> alive() const { return alive_; }
   /// Returns the index of the camera with this name. Throws ViewRefusal if there is no such camera.
   [[nodiscard]] std::size_t place_of(const std::string& camera) const;

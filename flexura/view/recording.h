@@ -20,8 +20,8 @@
 
 namespace flexura {
 
-/// Results of a run, prepared for viewing: the content of the log by time. Immutable, so that threads can
-/// share it. For a run that was killed, a Recording has the log up to the last complete chunk.
+/// Results of a run, prepared for viewing: the content of the log by time. A Recording is immutable, so that
+/// threads can share it. For a run that was killed, a Recording has the log up to the last complete chunk.
 class Recording {
  public:
   /// Opens a results folder of `flexura run`. Throws InputError if the folder is not a results folder, or if
@@ -60,7 +60,7 @@ class Recording {
     double time = 0;  ///< Middle of the exposure, s.
     std::string png;
   };
-  /// Returns an image. Throws InputError if the log has no such image.
+  /// Returns an image. Throws InputError if the log has no image with this number.
   [[nodiscard]] LoggedImage image(std::size_t camera, std::size_t place) const;
   /// Returns whether the log has commands of a servo.
   [[nodiscard]] bool has_servo() const { return !servo_steps_.empty(); }
@@ -69,9 +69,9 @@ class Recording {
   [[nodiscard]] std::optional<ServoStep> servo_step(double time) const;
   /// Returns the servo's last command at a time, s, with its observations in the pictures shown at that time.
   [[nodiscard]] std::optional<ShownServo> servo(double time) const;
-  /// Returns the index of the state at which the measured picture was taken whose measurements are drawn at a
-  /// time, s. The picture is that of a servo or calibration. Returns std::nullopt for a camera with logged
-  /// images, and at times without an active servo or calibration.
+  /// Measurements drawn at a time (s) belong to a picture: returns the index of the state at which this
+  /// picture was taken. A servo or a calibration has measured the picture. Returns std::nullopt for a camera
+  /// with logged images, and at times without an active servo or calibration.
   [[nodiscard]] std::optional<std::size_t> measured_state(std::size_t camera, double time) const;
   /// Returns whether the log has a calibration.
   [[nodiscard]] bool has_calibration() const { return !decisions_.empty(); }

@@ -209,8 +209,9 @@ std::optional<std::int64_t> RecordingSession::image_place(std::size_t camera, do
 std::int64_t RecordingSession::require_image(std::size_t camera, double time) const {
   const auto place = image_place(camera, time);
   if (!place)
-    throw ViewRefusal(fmt::format("the camera {} has no picture at {:.4g} s: its first picture is later",
-                                  Node{viewed()->cameras[camera].config().name, {}}.brief(), time));
+    throw ViewRefusal(
+        fmt::format("the camera {} has no picture at {:.4g} s: its first picture was taken later",
+                    Node{viewed()->cameras[camera].config().name, {}}.brief(), time));
   return *place;
 }
 

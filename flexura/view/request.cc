@@ -31,7 +31,7 @@ namespace {
 constexpr double farthest = 1e9;
 constexpr std::size_t most_sections = 10000;
 const NumberRange any_place = between(-farthest, farthest);
-constexpr const char* speed_meaning = "relative to real time; 0: as fast as possible";
+constexpr const char* speed_meaning = "speed relative to real time; 0: as fast as possible";
 const NumberRange speed_range = between(0, 1000);
 
 template <class S>
@@ -237,7 +237,7 @@ const Table<ExperimentRequest>& fields_of(const ExperimentRequest*) {
               reader.problem_at("add", fmt::format("= {}: expected \"pose\" or \"view\"",
                                                    Node{*experiment.add, {}}.brief()));
             if (is_view != experiment.camera.has_value())
-              reader.problem_at("camera", "expected a camera's name with add = \"view\", and only then");
+              reader.problem_at("camera", "expected a camera's name if, and only if, add = \"view\"");
             if (experiment.camera) check_camera(*experiment.camera, reader);
           });
   return table;

@@ -65,8 +65,8 @@ struct BranchRequest {
 };
 /// Requests the text of the experiment.
 struct ExperimentRequest {
-  /// Addition to the text. "pose": a task that moves the arm to the shown pose. "view": the shown view of
-  /// `camera`.
+  /// Addition to the text. "pose": adds a task that moves the arm to the shown pose. "view": makes the shown
+  /// view of `camera` its start.
   std::optional<std::string> add;
   std::optional<std::string> camera;  ///< Name of the camera for "view".
 };
@@ -152,8 +152,8 @@ struct Request {
   std::string error;  ///< Reason why the request is invalid, in one line; "" if `ask` is valid.
 };
 
-/// Parses a message. Never throws because of the message's content. The session checks whether the request
-/// fits the rig.
+/// Parses a message. No message makes this function throw an exception. The session checks whether the
+/// request fits the rig.
 [[nodiscard]] Request read_request(std::string_view text);
 
 }  // namespace flexura

@@ -88,11 +88,12 @@ class RunLink : public Progress, public RunWatcher {
   void cancel();
   /// From now on, the run waits before each state that is later than `time` (s).
   void pace_to(double time);
-  /// Stores the simulated rig of the run in its final state. Not called for a run without a simulated rig.
+  /// Stores the simulated rig of the run in its final state. A run without a simulated rig does not call this
+  /// function.
   void leave(std::unique_ptr<SimulatedRig> rig);
   /// Returns and removes the stored rig; null without a stored rig and before the run's end.
   [[nodiscard]] std::unique_ptr<SimulatedRig> take_rig();
-  /// Requests the true arm for the next news. Each call requests it once.
+  /// Requests the true arm for the next news. Each call requests the true arm once.
   void request_truth() { is_truth_requested_ = true; }
   void finish(End end);
   [[nodiscard]] News news() const;

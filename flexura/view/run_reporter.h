@@ -24,7 +24,7 @@ class RunReporter {
   [[nodiscard]] const std::vector<RunLink::Measured>& measured() const { return measured_; }
   /// Resets the reporter for the next run.
   void begin();
-  /// Sends the extras again in the next report, for a new client.
+  /// Makes the next report send the extras again, for a new client.
   void repeat() { are_extras_known_ = false; }
   /// Reports news to the clients. `clock`: present time, s. `now`: time of events in messages, s; if it is
   /// missing, messages have the events' own times.

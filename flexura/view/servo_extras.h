@@ -29,8 +29,8 @@ struct ShownServo {
 
 /// Returns the extras of a servo. The extras include the target shape, the observed shape and the true shape
 /// as ghosts, measured centerlines, images of the target shape, and distances along the arm. The true shape
-/// is omitted if its arcs are not those of the rig's arm, for example if it is a rod. Throws InputError if
-/// the shapes do not fit the rig's arm.
+/// is omitted if its arcs do not correspond to those of the rig's arm, for example for a rod. Throws
+/// InputError if the shapes do not fit the rig's arm.
 [[nodiscard]] Extras servo_extras(const ViewedRig& rig, const ShownServo& servo);
 
 /// Returns the names of a servo's errors. The errors are in percent of the arm's length.

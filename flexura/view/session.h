@@ -13,7 +13,7 @@
 
 namespace flexura {
 
-/// Exception for a request that a session refuses. The exception has the reason in one line.
+/// Exception for a request that a session refuses. what() returns the reason in one line.
 class ViewRefusal : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -68,7 +68,7 @@ struct StateMessage {
   bool is_recording = false;
   bool is_unsafe = false;
   bool is_weightless = false;  ///< Whether weight and loads are switched off.
-  /// Number of discontinuous changes of the whole state so far, modulo 65536.
+  /// Number of jumps of the whole state so far (for example by a reset), modulo 65536.
   std::uint16_t leaps = 0;
   std::uint32_t sequence = 0;
   double time = 0;  ///< Time, s.
@@ -79,7 +79,8 @@ struct StateMessage {
   std::vector<ActuatorSample> actuators;
   std::optional<RodEnergy> energy;  ///< Energies of an arm with inertia.
   std::optional<PushSample> push;
-  std::optional<double> pace;  ///< Speed of the simulation relative to real time; missing if it keeps up.
+  std::optional<double>
+      pace;  ///< Speed of the simulation relative to real time; missing if the simulation runs in real time.
   std::vector<ContactSample> contacts;
 };
 

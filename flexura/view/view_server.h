@@ -13,7 +13,7 @@
 
 namespace flexura {
 
-/// A viewer with its server. Both run as long as this object exists.
+/// A viewer with its server. The viewer and the server run as long as this object exists.
 class ViewServer {
  public:
   /// Throws std::system_error if the server cannot listen at the configured address.
@@ -25,7 +25,7 @@ class ViewServer {
   [[nodiscard]] std::string url() const { return server_.url(); }
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
   [[nodiscard]] const std::string& token() const { return server_.token(); }
-  /// These functions are those of Server.
+  /// These functions call the functions of Server with the same names.
   [[nodiscard]] std::size_t waiting_bytes() const { return server_.waiting_bytes(); }
   [[nodiscard]] std::size_t busy_clients() const { return server_.busy_clients(); }
 

@@ -38,11 +38,11 @@ struct PushScale {
   double length = 0;  ///< Length of the arm at rest, m.
   /// Stiffness of the push spring, N/m: five times the stiffness of the arm's tip at the start.
   double stiffness = 0;
-  double most =
-      0;  ///< Largest force, N. If the arm were linear, this force would move the tip by the arm's length.
+  double most = 0;  ///< Largest force of a push, N: the force that would move the tip of a linear arm by the
+                    ///< arm's length.
 };
 
-/// A rig of an experiment, prepared for viewing. Immutable, so that threads can share it.
+/// A rig of an experiment, prepared for viewing. A ViewedRig is immutable, so that threads can share it.
 class ViewedRig {
  public:
   explicit ViewedRig(Experiment read);
@@ -50,7 +50,8 @@ class ViewedRig {
   Experiment experiment;
   ArmModel model, truth;  ///< Model and truth of the arm.
   ArmState initial;       ///< Initial state of the true arm.
-  /// Whether the true arm is a rod. The simulated plant then computes the backbone instead of `truth`.
+  /// Whether the true arm is a rod. The backbone of a rod is computed by the simulated plant instead of
+  /// `truth`.
   bool is_rod;
   std::vector<PulledTendon> actuators;  ///< Tendons that can be pulled individually.
   bool has_weight = false;              ///< Whether weight or loads act on the true arm.
@@ -72,10 +73,10 @@ class ViewedRig {
   /// Returns the true positions of a camera's head and stage at the start.
   [[nodiscard]] CameraStance first_stance(std::size_t camera) const;
   /// Returns the true positions of a camera's head and stage for measured positions, without backlash and
-  /// quantisation. Differences between truth and model at the start remain.
+  /// quantisation. Initial differences between the true rig and its model do not change.
   [[nodiscard]] CameraStance stance(std::size_t camera, const CameraReading& reading) const;
-  /// Returns the positions that a camera's head and stage report at the true axis positions `stance`. This is
-  /// the inverse of stance().
+  /// Returns the positions that a camera's head and stage report at the true axis positions `stance`. This
+  /// function is the inverse of stance().
   [[nodiscard]] CameraReading reading(std::size_t camera, const CameraStance& stance) const;
   /// Returns the camera's view according to its model and measured positions.
   [[nodiscard]] View nominal_view(std::size_t camera, const CameraReading& reading) const;
@@ -111,8 +112,8 @@ struct ValueShot {
 [[nodiscard]] bool show_the_same(const ValueShot& a, const ValueShot& b);
 
 /// Returns the times of the instants that value_shot() needs for a frame that starts at `start` (s). For an
-/// instantaneous exposure, there is one time. Otherwise, the times are so close that the motion between them
-/// is nearly linear.
+/// instantaneous exposure, there is one time. For a longer exposure, the times are so close that the motion
+/// between them is nearly linear.
 [[nodiscard]] std::vector<double> times_of_instants(const SensorConfig& sensor, double start);
 
 }  // namespace flexura

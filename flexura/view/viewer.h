@@ -19,7 +19,7 @@ namespace flexura {
 
 /// An experiment that a viewer offers to open.
 struct ViewExample {
-  std::string name;                    ///< Name that clients use to request it.
+  std::string name;                    ///< Name by which clients request the example.
   std::string title;                   ///< Title for users.
   std::function<ViewedRigPtr()> load;  ///< Loads the example's rig; never returns null.
   std::filesystem::path results;       ///< Folder for the results of runs of this experiment.
@@ -28,7 +28,7 @@ struct ViewExample {
 
 /// Initial content of a viewer: a recording or a rig.
 struct ViewStart {
-  std::string session;                 ///< Identifier that differs for each start of the program.
+  std::string session;                 ///< Identifier that is different at every start of the program.
   ViewedRigPtr rig = {};               ///< The rig; null only if there is a recording.
   RecordingPtr recording = {};         ///< The recording; may be null.
   std::filesystem::path results = {};  ///< Folder for the results of task runs; default: results/view.
@@ -49,8 +49,8 @@ class Viewer {
 
   void opened(ClientId client);
   void closed(ClientId client);
-  /// Handles a message of a client. `debt` is released when the client has the answer, or can no longer get
-  /// one.
+  /// Handles a message of a client. The viewer releases `debt` when the client has received the answer, or
+  /// can no longer receive one.
   void on_message(ClientId client, const std::string& text,
                   const std::shared_ptr<const void>& debt = nullptr);
   void asked(const std::string& target, const std::function<void(HttpAnswer)>& answer);
@@ -62,7 +62,8 @@ class Viewer {
   /// Cancels a run of tasks.
   void cancel();
 
-  /// Returns whether advance() must be called: a client is connected, or a run has a given speed.
+  /// Returns whether the caller must call advance(), because a client is connected or a run has a given
+  /// speed.
   [[nodiscard]] bool is_watched() const {
     return !clients_.empty() || (live_ != nullptr && live_->is_pacing());
   }

@@ -11,7 +11,7 @@
 
 namespace flexura {
 
-/// Background work with one thread per lane.
+/// Executes background work, with one thread per lane (queue).
 class Workers : public Background {
  public:
   /// `back` receives functions that must be called on the session's thread. `back` itself is called from any

@@ -48,7 +48,7 @@ void add_line(LineChart& chart, const CalibrationRun& run, const std::string& na
 }
 
 ReportFigure offsets(const CalibrationRun& run, std::size_t number) {
-  LineChart chart = step_chart(run, "remaining errors if the result were commanded after this view");
+  LineChart chart = step_chart(run, "errors that would remain if the result were commanded after this view");
   const auto add = [&](const char* name, const auto& value) {
     const auto of = [&](const auto& left) { return left ? value(*left) : nothing; };
     add_line(chart, run, name, of(run.result.nominal_remainder),

@@ -86,8 +86,7 @@ void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::stri
 void check_idle_keys(const CalibrateTask& task, const std::string& path, Reader& reader) {
   const auto refuse = [&](const char* key, bool is_given, const char* whose) {
     if (is_given)
-      reader.problem_at(path + key,
-                        fmt::format("this key applies only to {}: expected it to be absent", whose));
+      reader.problem_at(path + key, fmt::format("this key applies only to {}: expected no such key", whose));
   };
   const CalibrateTask usual;
   const CalibrateLoopConfig &loop = task.loop, &loop_usual = usual.loop;
@@ -115,19 +114,17 @@ void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
     check_shape(task.pose[i], arm.kind, arm.section.size(), fmt::format("{}.pose[{}]", path, i), reader);
   const bool is_bundle = !is_loop(task);
   if (!is_bundle && task.required_std != CalibrateRequiredStd{})
-    reader.problem_at(
-        path + ".required_std",
-        "this key applies only to the methods bundle and bundle-etalon: expected it to be absent");
+    reader.problem_at(path + ".required_std",
+                      "this key applies only to the methods bundle and bundle-etalon: expected no such key");
   if (!is_bundle && task.method != CalibrateMethod::arcs && task.camera_prior != CalibrateCameraPrior{})
     reader.problem_at(
         path + ".camera_prior",
-        "this key applies only to the methods bundle, bundle-etalon and arcs: expected it to be absent");
+        "this key applies only to the methods bundle, bundle-etalon and arcs: expected no such key");
   if (task.method != CalibrateMethod::bundle && task.arm_prior != CalibrateArmPrior{})
     reader.problem_at(path + ".arm_prior",
-                      "this key applies only to the method bundle: expected it to be absent");
+                      "this key applies only to the method bundle: expected no such key");
   if (is_bundle && task.loop != CalibrateLoopConfig{})
-    reader.problem_at(path + ".loop",
-                      "this key applies only to the paper's methods: expected it to be absent");
+    reader.problem_at(path + ".loop", "this key applies only to the paper's methods: expected no such key");
   if (!is_bundle) check_idle_keys(task, path, reader);
   if (task.method == CalibrateMethod::bundle || task.method == CalibrateMethod::arcs)
     check_markers(arm, path, reader);

@@ -232,8 +232,7 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                   .unit = Unit::second,
                   .range = between(0, longest)})
           .field("settle_timeout", &CalibrateTask::settle_timeout,
-                 {.meaning =
-                      "Longest duration of a motion. A device that has not arrived by then counts as stuck.",
+                 {.meaning = "Longest duration of a motion. A device that takes longer counts as stuck.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest)})
           .field("frame_timeout", &CalibrateTask::frame_timeout,

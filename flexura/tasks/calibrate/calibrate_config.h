@@ -77,8 +77,8 @@ struct CalibrateLoopConfig {
   bool operator==(const CalibrateLoopConfig&) const = default;
 };
 
-/// `kind = "calibrate"`: calibrates two cameras from their pictures. Then points them along orthogonal axes
-/// at the arm, with equal zoom.
+/// `kind = "calibrate"`: calibrates two cameras from their pictures. Then points the cameras along orthogonal
+/// axes at the arm, with equal zoom.
 struct CalibrateTask {
   std::string name;
   CalibrateMethod method = CalibrateMethod::bundle;
@@ -97,7 +97,7 @@ struct CalibrateTask {
   double move_duration = RigSessionConfig{}.move_duration;  ///< Duration of a move of the arm, s.
   double pause = 0;  ///< Time to wait after each motion of the arm, until it stops swinging, s.
   double settle_timeout = RigPatience{}.settle;  ///< Time limit for motions to end, s.
-  double frame_timeout = RigPatience{}.frame;    ///< Time limit for a frame, s.
+  double frame_timeout = RigPatience{}.frame;    ///< Longest wait for a picture, s.
   std::string save;  ///< File in the experiment's folder for the calibrated rig; "": not saved.
 };
 
@@ -134,7 +134,7 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 [[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& nominal,
                                      const StandConfig& stand);
 
-/// Returns the configuration of a LoopSession for a task with one of the paper's methods. The result lacks
+/// Returns the configuration of a LoopSession for a task with one of the paper's methods. The caller must add
 /// the function that renders the simulator's pictures.
 [[nodiscard]] LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
                                      const std::vector<CameraConfig>& cameras, const StandConfig& stand);

@@ -58,7 +58,7 @@ TaskOutcome outcome_of_loop(const CalibrationRun& run, TaskOutcome outcome) {
   outcome.text = fmt::format("offsets within {:.3g} px after {} pictures: ", run.accepted,
                              loop.pictures[0] + loop.pictures[1]);
   outcome.text += outcome.is_reached ? "reached"
-                                     : fmt::format("not reached, the offset of {} is {:.3g}",
+                                     : fmt::format("not reached: the offset of {} is {:.3g}",
                                                    missed->quantity, std::abs(missed->last->offset));
   if (loop.angle)
     outcome.text +=

@@ -110,7 +110,7 @@ class LoggedSession : public RigSessionWatcher {
     message.next = decision.next;
     log_.publish({calibration_decisions_topic, message.time, message});
     log_.event(decision.time, Recorder::Level::info, run_.name,
-               fmt::format("{} of {}: {:.4g} {} off; {}", decision.step, name_of(decision.camera),
+               fmt::format("{} of {}: offset {:.4g} {}; {}", decision.step, name_of(decision.camera),
                            decision.offset, decision.unit, decision.next));
   }
   bool is_cancelled() override { return stage_.progress.is_cancelled(); }

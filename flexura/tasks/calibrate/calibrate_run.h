@@ -38,8 +38,8 @@ struct CalibrationRun {
   std::optional<LoopResult> loop;  ///< Result if the method is one of the paper's; `result` is then empty.
   std::vector<CommandedArc> arcs;  ///< Arcs of the methods "arcs" and "arcs-paper", one per camera.
   MotionPtr motion;                ///< Commanded motion of the arm, from the task's start.
-  /// True remaining errors at the cameras' final positions. Only for simulated rigs; the session does not
-  /// know them.
+  /// True remaining errors at the cameras' final positions. Known only for simulated rigs; the calibration
+  /// does not use these errors.
   std::optional<RigRemainder> truth;
   std::optional<std::array<double, 2>> true_focal =
       {};  ///< True focal lengths at the cameras' final positions, px; only for simulated rigs.
@@ -50,8 +50,8 @@ struct CalibrationRun {
   [[nodiscard]] const std::string& reason() const { return loop ? loop->reason : result.reason; }
 };
 
-/// Returns the image of the arm's axis that the ideal camera would observe, from base to tip, px. Empty for
-/// methods without arcs.
+/// Returns the image of the arm's axis that the ideal camera would observe, from base to tip, px. The result
+/// is empty for methods without arcs.
 [[nodiscard]] std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run,
                                                       const CameraObservation& observed);
 

@@ -81,8 +81,8 @@ ChapterTable table_of_bundle(const CalibrationRun& run) {
   for (std::size_t i = 0; i < 2; ++i)
     table.rows.push_back({fmt::format("prediction error in a new picture of {} (px)", run.cameras[i]), "",
                           decimals(run.result.verified[i], 2), "", "", ""});
-  table.rows.push_back({"residuals, root mean square (standard deviations)", "",
-                        decimals(run.result.found.rms, 2), "", "", ""});
+  table.rows.push_back(
+      {"RMS of the residuals, in standard deviations", "", decimals(run.result.found.rms, 2), "", "", ""});
   return table;
 }
 

@@ -12,8 +12,8 @@ const Table<CalibrationMoveMessage>& fields_of(const CalibrationMoveMessage*) {
           .field("device", &M::device, {.meaning = "Commanded device: \"arm\", or the name of a camera."})
           .field("bends", &M::bends, {.meaning = "For the arm: bend of each section, rad, from the base."})
           .field("duration", &M::duration, {.meaning = "For the arm: duration of the motion, s."})
-          .field("pan", &M::pan, {.meaning = "For a camera: pan, rad, to its left."})
-          .field("tilt", &M::tilt, {.meaning = "For a camera: tilt, rad, upwards."})
+          .field("pan", &M::pan, {.meaning = "For a camera: pan, rad; positive to its left."})
+          .field("tilt", &M::tilt, {.meaning = "For a camera: tilt, rad; positive upwards."})
           .field("zoom", &M::zoom, {.meaning = "For a camera: zoom, as a ratio or as a motor position."})
           .field("stage", &M::stage, {.meaning = "For a camera: offset of the stage, m."});
   return table;

@@ -73,8 +73,8 @@ struct CalibrationObservationMessage {
   std::vector<AxisPointMessage> points;  ///< Points of the centerline, from base to tip.
   std::int64_t unknown = 0;              ///< Number of observed markers that were not identified.
   std::optional<std::string> reason;     ///< Why the picture is unusable.
-  std::optional<std::vector<SeenValueMessage>> values;  ///< Values of the paper's methods.
-  std::optional<CircleMessage> circle;                  ///< Circle of the paper's methods.
+  std::optional<std::vector<SeenValueMessage>> values;  ///< Values measured by the paper's methods.
+  std::optional<CircleMessage> circle;                  ///< Circle measured by the paper's methods.
   /// Image of the arm's axis that the ideal camera would observe, from base to tip, px; only for methods with
   /// arcs.
   std::optional<std::vector<std::array<double, 2>>> ideal;
@@ -84,8 +84,8 @@ struct CalibrationObservationMessage {
 struct CalibrationDecisionMessage {
   double time = 0;                    ///< In s.
   std::int64_t looks = 0;             ///< Number of views so far.
-  bool found = false;                 ///< Whether a rig was found.
-  std::optional<std::string> reason;  ///< Why no rig was found, or why the calibration ended early.
+  bool found = false;                 ///< Whether a rig model was found that explains the observations.
+  std::optional<std::string> reason;  ///< Why no rig model was found, or why the calibration ended early.
   double rms = 0;                     ///< RMS of the residuals, in standard deviations.
   std::int64_t outliers = 0;          ///< Number of outliers.
   double angle =

@@ -11,7 +11,8 @@ const Table<DynamicsSampleMessage>& fields_of(const DynamicsSampleMessage*) {
           .field("time", &M::time, {.meaning = "Time since the experiment's start, s."})
           .field("kinetic_energy", &M::kinetic_energy, {.meaning = "T, J."})
           .field("gravity_energy", &M::gravity_energy,
-                 {.meaning = "V_g, J; 0 if all mass were at the base's height."})
+                 {.meaning = "Potential energy of gravity V_g, J; 0 for an arm with all its mass at the "
+                             "height of the base."})
           .field("elastic_energy", &M::elastic_energy, {.meaning = "V_e, J."})
           .field("potential", &M::potential,
                  {.meaning = "Pi, J; it includes V_e if `law.elasticity` is `shaped`."})

@@ -57,13 +57,12 @@ class DynamicsPlant {
   /// Returns the largest |q| of the target in the basis, rad. A polynomial may exceed its values at the
   /// nodes.
   [[nodiscard]] double largest_target_elevation() const;
-  /// Returns p_WB, m: the origin of the distributed arm's positions. The axes of these positions are those of
-  /// W.
+  /// Returns p_WB, m: the origin of the distributed arm's positions. These positions are in the axes of W.
   [[nodiscard]] const Eigen::Vector3d& base() const { return arm_.X_WB.position; }
 
   /// Returns the state of the experiment's arm with the directions of the distributed arm at the sections'
-  /// ends. Of arcs that differ by full turns, it uses those nearest to `before`. Both arms have the same
-  /// curve if the arm is planar and its angle is linear in each section.
+  /// ends. Several arcs that differ by full turns have these directions; the result has the arcs nearest to
+  /// `before`. Both arms have the same curve if the arm is planar and its angle is linear in each section.
   [[nodiscard]] ArmState state(const Eigen::VectorXd& x, const ArmState& before) const;
   /// Returns (theta, q) at the sections' ends, rad.
   [[nodiscard]] Eigen::Matrix2Xd end_angles(const Eigen::VectorXd& x) const;

@@ -93,11 +93,11 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
   if (!run.stopped.empty()) points.push_back("The task ended early: " + run.stopped + ".");
   if (run.verdict) {
     const LyapunovVerdict& verdict = *run.verdict;
-    points.push_back(
-        fmt::format("W decreases monotonically: {} (largest rise {:.2g} J). Its decrease equals the energy "
-                    "that damping removes: {} (largest difference {:.2g} J). W has settled at the end: {}.",
-                    yes_or_no(verdict.is_monotone), verdict.largest_rise, yes_or_no(verdict.is_balanced),
-                    verdict.imbalance, yes_or_no(verdict.is_settled)));
+    points.push_back(fmt::format(
+        "W decreases monotonically: {} (largest rise {:.2g} J). The decrease of W equals the energy that "
+        "damping removes: {} (largest difference {:.2g} J). W has settled at the end: {}.",
+        yes_or_no(verdict.is_monotone), verdict.largest_rise, yes_or_no(verdict.is_balanced),
+        verdict.imbalance, yes_or_no(verdict.is_settled)));
     if (run.is_measured) {
       points.emplace_back(
           "The law used measured angles with delay, noise or sampling. The theory assumes exact angles, so "
@@ -191,7 +191,7 @@ Chapter dynamics_chapter(const DynamicsRun& run, std::size_t number) {
   if (run.is_done())
     text = run.is_measured ? "The arm reached the target with measured angles. " + course
                            : "The arm reached the target in agreement with the theory: W decreased "
-                             "monotonically. Its decrease equals the energy that damping removed. " +
+                             "monotonically. The decrease of W equals the energy that damping removed. " +
                                  course;
   Chapter chapter{"Dynamics: " + run.name, std::move(text), {}, findings_of(run), false};
   if (run.samples.size() > 1) chapter.figures = figures_of(run, number);

@@ -42,8 +42,8 @@ struct DynamicsRun {
   std::string stopped;                  ///< Why the task ended early, or "".
   std::optional<LyapunovVerdict>
       verdict;  ///< Agreement with the theory; missing if the task could not begin.
-  /// Differences from the theory. Empty if the run agrees with the theory, or if the law used measured angles
-  /// and the arm reached its target.
+  /// Differences from the theory. Empty if the run agrees with the theory, or if the arm reached its target
+  /// under a law that used measured angles.
   std::vector<std::string> reasons;
   DynamicsError remaining;  ///< Distance from the target at the end.
   /// Value of PotentialRun::left_over().
@@ -62,7 +62,7 @@ struct DynamicsRun {
   [[nodiscard]] DynamicsSampleMessage message(const DynamicsSample& sample) const;
 };
 
-/// Returns the law of a task for this arm.
+/// Returns the control law of a task of kind "dynamics" for this arm.
 [[nodiscard]] PotentialLaw potential_law_of(const DynamicsTask& task, const DynamicsPlant& plant);
 /// Returns the violated conditions of the theory.
 [[nodiscard]] std::vector<std::string> theory_violations(const DynamicsTask& task, const DynamicsPlant& plant,

@@ -78,10 +78,10 @@ void check_columns(const std::vector<std::string>& names, const std::vector<Colu
     if (is_planar_word && kind == ArmKind::spatial) {
       problems.push_back(
           {header_row, i,
-           fmt::format("column {} is for planar arms: expected bend_x_1, bend_y_1, ...", names[i])});
+           fmt::format("column {} applies only to planar arms: expected bend_x_1, bend_y_1, ...", names[i])});
     }
     if (column.quantity == "bend_y" && kind == ArmKind::planar) {
-      problems.push_back({header_row, i, fmt::format("column {} is for spatial arms", names[i])});
+      problems.push_back({header_row, i, fmt::format("column {} applies only to spatial arms", names[i])});
     }
   }
   if (!has_any(columns, "time")) problems.push_back({header_row, 0, "no column time"});

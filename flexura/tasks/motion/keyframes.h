@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// Special values of KeyframeProblem::row for the row of column names and for the table as a whole.
+/// Special values of KeyframeProblem::row: they stand for the row of column names, and for the whole table.
 inline constexpr std::ptrdiff_t header_row = -1;
 inline constexpr std::ptrdiff_t all_rows = -2;
 

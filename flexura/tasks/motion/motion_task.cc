@@ -83,7 +83,7 @@ Profile profile_of(MoveLaw law, double duration) {
     case MoveLaw::trapezoid:
       break;
   }
-  throw std::logic_error("a trapezoid computes its own duration");
+  throw std::logic_error("the law trapezoid computes the duration itself");
 }
 
 MotionPtr motion_of(const MoveTask& task, const ArmModel& model, const ArmState& from) {

@@ -32,17 +32,18 @@ void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const s
   check_one_or_each(task.law.size(), sections, path + ".law", reader);
   const auto trapezoids = std::ranges::count(task.law, MoveLaw::trapezoid);
   if (trapezoids == 0) {
-    if (task.max_rate) reader.problem_at(path + ".max_rate", "is for law = \"trapezoid\"");
-    if (task.max_acceleration) reader.problem_at(path + ".max_acceleration", "is for law = \"trapezoid\"");
+    if (task.max_rate) reader.problem_at(path + ".max_rate", "applies only to law = \"trapezoid\"");
+    if (task.max_acceleration)
+      reader.problem_at(path + ".max_acceleration", "applies only to law = \"trapezoid\"");
     return;
   }
   if (static_cast<std::size_t>(trapezoids) != task.law.size()) {
     reader.problem_at(path + ".law",
                       "mixes trapezoid with other laws: expected trapezoid for all sections or for none");
   }
-  if (!task.max_rate) reader.problem_at(path + ".max_rate", "missing: the law trapezoid needs it");
+  if (!task.max_rate) reader.problem_at(path + ".max_rate", "missing: the law trapezoid needs this key");
   if (!task.max_acceleration)
-    reader.problem_at(path + ".max_acceleration", "missing: the law trapezoid needs it");
+    reader.problem_at(path + ".max_acceleration", "missing: the law trapezoid needs this key");
   if (task.max_rate) check_one_or_each(task.max_rate->size(), sections, path + ".max_rate", reader);
   if (task.max_acceleration)
     check_one_or_each(task.max_acceleration->size(), sections, path + ".max_acceleration", reader);

@@ -49,7 +49,7 @@ const Table<MoveTask>& fields_of(const MoveTask*) {
                       "has its own law, the cord angles change by these laws instead.")
           .field("name", &MoveTask::name, name_spec)
           .field("duration", &MoveTask::duration,
-                 {.meaning = "Duration of the motion. With the law `trapezoid` it is computed.",
+                 {.meaning = "Duration of the motion. The law `trapezoid` computes the duration.",
                   .unit = Unit::second,
                   .range = between(min_duration, max_duration),
                   .default_text = "1"})

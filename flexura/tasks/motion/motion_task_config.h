@@ -25,7 +25,8 @@ struct MoveTarget : ShapeConfig {
 /// `kind = "move"`: the arm moves from its current shape to a target shape. The bend and stretch of each
 /// section follow a straight line. If sections have different laws and the shape is given by cord angles,
 /// each cord angle follows its own law. A tip position is converted to a shape by inverse kinematics,
-/// starting at the current shape. For an unreachable position, the shape with the nearest tip is used.
+/// starting at the current shape. If the position is unreachable, the arm moves to the shape whose tip is
+/// nearest to it.
 struct MoveTask {
   std::string name;
   std::optional<double> duration;  ///< Duration, s; default: 1. The law `trapezoid` computes its duration.

@@ -194,7 +194,7 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
                     100 * result.missed));
   if (result.missed_steps > 0)
     chapter.points.push_back(
-        fmt::format("{} control steps were missed because the computation took longer than a step.",
+        fmt::format("{} control steps were skipped because the computation took longer than a step.",
                     result.missed_steps));
   for (std::size_t i = 0; i < 2; ++i) {
     if (result.first) chapter.figures.push_back(servo_photograph(run, i, false, number));

@@ -16,7 +16,7 @@ namespace flexura {
 [[nodiscard]] Node servo_node(const ServoRun& run);
 
 /// Returns the servo's targets for the report's 3D view, with times in [0, duration] s from its start. A
-/// moving target is sampled as several targets.
+/// moving target is represented by several targets at successive times.
 [[nodiscard]] std::vector<ReportSpace::Target> servo_targets(const ServoRun& run, double duration);
 
 /// Returns the report's chapter of a servo: the errors over time, and the first and last pictures with the

@@ -21,8 +21,8 @@ struct ServoRun {
   RigModel nominal;
   double settle = 0;  ///< The task's ServoSettings::settle, s.
   /// Result of the session. The steps in the result include the true errors in the simulation, which the
-  /// session does not know. If pictures give the target, the true shape is compared with the shape estimated
-  /// from the pictures.
+  /// session does not know. If the target is given by pictures, the true shape is compared with the shape
+  /// estimated from these pictures.
   ServoResult result;
   std::optional<ServoError>
       true_remaining;  ///< Mean true error over the last `settle` s; missing if the truth is unknown.

@@ -25,14 +25,14 @@ struct ServoTargetShape {
 /// Returns the length of the smooth curve through points along the arm, m.
 [[nodiscard]] double curve_length(const std::vector<std::array<double, 3>>& points);
 
-/// Returns the shapes for all targets in their order; std::nullopt for targets given by pictures. Each search
-/// starts at the previous shape.
+/// Returns the shapes for all targets in their order; std::nullopt for targets given by pictures. The search
+/// for each shape starts at the shape of the previous target.
 [[nodiscard]] std::vector<std::optional<ServoTargetShape>> servo_target_shapes(const ServoTask& task,
                                                                                const ArmModel& arm,
                                                                                ArmState from);
 
 /// Returns the pictures of a target that is given by pictures. The picture files are in `folder` or below.
-/// Throws InputError if a picture is invalid or its size differs from that of its camera's pictures.
+/// Throws InputError if a picture is invalid or does not have the picture size of its camera.
 [[nodiscard]] RecordedViews recorded_views(const ServoTargetConfig& target,
                                            const std::array<CameraConfig, 2>& cameras,
                                            const std::filesystem::path& folder);

@@ -146,7 +146,7 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                   .range = above_up_to(0, 1000)})
           .field("damping", of_task(&T::damping),
                  {.meaning = "Damping of the least squares, relative to the root mean square of the "
-                             "Jacobian's entries. The law shape does not use it.",
+                             "Jacobian's entries. The law shape does not use the damping.",
                   .range = between(0, 10)})
           .field("predict", of_task(&T::predict),
                  {.meaning = "Whether the servo predicts the effect of commands that were sent after the "

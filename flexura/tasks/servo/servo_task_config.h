@@ -20,10 +20,11 @@
 
 namespace flexura {
 
-/// A target shape of a servo. Either one of these fields or the fields of ShapeConfig give it.
+/// A target shape of a servo. Exactly one of the fields below, or the fields of ShapeConfig, specify the
+/// shape.
 struct ServoTargetConfig : ShapeConfig {
   double time = 0;  ///< Time from the task's start, s.
-  /// Tip position p_WT, m. Inverse kinematics computes the shape.
+  /// Tip position p_WT, m. Inverse kinematics computes a shape with this tip position.
   std::optional<std::array<double, 3>> position;
   /// Points along the whole backbone, in W, m.
   std::optional<std::vector<std::array<double, 3>>> curve;
@@ -33,7 +34,7 @@ struct ServoTargetConfig : ShapeConfig {
 };
 
 /// `kind = "servo"`: two cameras control the arm until it reaches the target shape. The fields of this struct
-/// depend on the arm, the cameras and the file's folder; those of ServoSettings do not.
+/// depend on the arm, the cameras and the file's folder; the fields of ServoSettings do not.
 struct ServoTask : ServoSettings {
   std::string name;
   std::vector<std::string> cameras;       ///< Names of two cameras; empty: the first two cameras.

@@ -107,12 +107,11 @@ ReportFigure target_picture(const ImageStudy& study) {
 std::string text_of(const ImageStudy& study) {
   const auto [length, ratio] = study.largest_difference();
   const auto [measured, rms] = study.measured_difference();
-  const std::string pictures =
-      measured == 0
-          ? ""
-          : fmt::format(
-                " Rings: {} lengths measured in pictures of the square, with an error of {:.3f} px rms.",
-                measured, rms);
+  const std::string pictures = measured == 0 ? ""
+                                             : fmt::format(
+                                                   " The rings show {} lengths measured in pictures of the "
+                                                   "square, with an error of {:.3f} px rms.",
+                                                   measured, rms);
   std::size_t seen = 0;
   for (std::size_t i = 0; i < study.values.size(); ++i) seen += study.is_seen(i) ? 1 : 0;
   return fmt::format(

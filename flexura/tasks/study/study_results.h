@@ -26,8 +26,8 @@ void write_study_table(ImageStudy& study, const std::filesystem::path& folder);
 /// Returns the study's item in the list `studies` of a summary.
 [[nodiscard]] Node study_node(const ImageStudy& study);
 
-/// Returns the report's chapter of a study: the target in the image, and the target's features over the
-/// parameter.
+/// Returns the report's chapter of a study: the target in the image, and plots of the target's features
+/// against the parameter.
 [[nodiscard]] Chapter study_chapter(const ImageStudy& study);
 
 }  // namespace flexura

@@ -147,7 +147,7 @@ export class Link {
       if (this.socket !== socket) return;
       this.drop();
       const lost = reason ? `The program closed the connection: ${reason}` : 'The connection was lost.';
-      this.wait(opened ? lost : 'The program did not take the connection.');
+      this.wait(opened ? lost : 'The program did not accept the connection.');
     };
   }
 

@@ -62,7 +62,7 @@ function view(app: App): Binding[] {
     { group, keys: ['Numpad0', '0', 'a'], what: 'Show the whole arm', run: () => (app.views.free(), app.view.value?.frame_arm()) },
     { group, keys: ['Numpad5', '5', 'Shift+Home'], what: 'The arm and all cameras in view', run: () => (app.views.free(), app.view.value?.frame_cameras()) },
     { group, keys: ['NumpadDecimal', '.'], what: 'Look at the picked point, or at the tip', run: () => look_at_point(app) },
-    { group, keys: ['k'], what: 'Pick the backbone’s tip, or nothing; its slider goes along the arm', run: () => pick_tip(app) },
+    { group, keys: ['k'], what: 'Pick the tip of the backbone, or clear the picked point; a slider moves the point along the arm', run: () => pick_tip(app) },
     { group, keys: [']', 'BracketRight'], what: 'The next view: free, then each camera', run: () => app.views.cycle(1) },
     { group, keys: ['[', 'BracketLeft'], what: 'Previous view', run: () => app.views.cycle(-1) },
     { group, keys: ['Alt+ArrowLeft', 'Numpad4'], what: 'Orbit left', run: orbit(turn, 0) },
@@ -70,7 +70,7 @@ function view(app: App): Binding[] {
     { group, keys: ['Alt+ArrowUp', 'Numpad8'], what: 'Rise', run: orbit(0, turn) },
     { group, keys: ['Alt+ArrowDown', 'Numpad2'], what: 'Sink', run: orbit(0, -turn) },
     { group, keys: ['Alt+Shift+ArrowLeft'], what: 'Move the view to the left', run: pan(0.04, 0) },
-    { group, keys: ['Alt+Shift+ArrowRight'], what: 'Move it to the right', run: pan(-0.04, 0) },
+    { group, keys: ['Alt+Shift+ArrowRight'], what: 'Move the view to the right', run: pan(-0.04, 0) },
     { group, keys: ['Alt+Shift+ArrowUp'], what: 'Move it up', run: pan(0, 0.04) },
     { group, keys: ['Alt+Shift+ArrowDown'], what: 'Move it down', run: pan(0, -0.04) },
     { group, keys: ['PageUp'], what: 'Nearer', run: zoom(0.9) },
@@ -102,7 +102,7 @@ function rig(app: App): Binding[] {
   const ask = (what: string) => () => void viewer.commander.plain(what);
   return [
     { group, keys: ['Backspace'], what: 'Reset to the initial state', run: () => (viewer.readonly ? viewer.playback.seek(0) : viewer.blind || ask('reset')()) },
-    { group, keys: ['h', 'F8'], what: 'Halt: stop all motion; from any field, too', anywhere: true, run: ask('halt') },
+    { group, keys: ['h', 'F8'], what: 'Halt: stop all motion; also while you type in a field', anywhere: true, run: ask('halt') },
     { group, keys: ['g'], what: 'Push an elastic arm by dragging it, on or off', run: () => toggle_push(app) },
     { group, keys: ['r'], what: 'Run the tasks', run: () => viewer.blind || ask('run')() },
     { group, keys: ['c'], what: 'Cancel the run', run: () => viewer.readonly || ask('cancel')() },

@@ -25,7 +25,7 @@ export function ActuatorPanel({ actuators }: { actuators: ActuatorControl[] }) {
   const sections = [...new Set(actuators.map(({ section }) => section))].sort((a, b) => a - b);
   return (
     <>
-      <label class="check" title="Those that bend the same section go along, so that none pulls against the one that is moved. Without that each moves alone.">
+      <label class="check" title="If on, tendons that bend the same section move together with the moved tendon, so that none pulls against it. If off, each tendon moves alone.">
         <input type="checkbox" checked={together} disabled={still}
           onChange={(event) => (preferences.tendons_together.value = event.currentTarget.checked)} />
         The other tendons follow
@@ -55,7 +55,7 @@ function Pull({ name, state: { force, slack, lost }, scale }: { name: string; st
   const text = slack ? 'slack' : force_text(force);
   return (
     <div class="pull" data-slack={slack} title={`${name}: ${slack ? 'hangs slack' : `pulls by ${text}; the bar ends at ${scale} N`}`}>
-      <span class="lost" title="Its motor had to pull by more than it can, and lost microsteps, of which its controller does not know">
+      <span class="lost" title="The motor of this tendon was overloaded and lost microsteps, which its controller did not notice">
         {lost > 0 && <>lost {Math.round(lost)}<span class="sr"> microsteps</span></>}
       </span>
       <span class="bar" aria-hidden="true"><span style={{ width: `${Math.min(100, (100 * force) / scale)}%` }} /></span>

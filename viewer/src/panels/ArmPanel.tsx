@@ -20,7 +20,7 @@ export function ArmPanel() {
   const hello = viewer.hello.value;
   const scene = viewer.scene.value;
   const state = viewer.shown;
-  if (!hello || !scene || !state) return <p class="empty">The arm’s state has not come yet.</p>;
+  if (!hello || !scene || !state) return <p class="empty">No data received yet.</p>;
   const { kind } = scene.arm;
   const { controls } = hello;
   const modes = modes_of(kind, controls);
@@ -104,7 +104,7 @@ export function ArmPanel() {
         </fieldset>
       ))}
       <TipPanel />
-      <button type="button" class="button save-shown" title="Adds a task that moves the arm to the shown pose to the text of the experiment, to be saved as a new file"
+      <button type="button" class="button save-shown" title="Opens the text of the experiment with an added task that moves the arm to the shown pose; you can save it as a new file"
         disabled={viewer.link.status.value.kind !== 'open'} onClick={() => edit_experiment(app, { add: 'pose' })}><Icon name="save" />Save pose as a task</button>
     </>
   );

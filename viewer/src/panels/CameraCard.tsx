@@ -99,7 +99,7 @@ export function CameraCard({ camera, pixel }: Props) {
       </div>
       <figcaption>
         <b>{camera.name}</b>
-        <span class="picture-time" title={picture ? 'The middle of the picture’s exposure, and how far that is from the instant that is shown' : undefined}>
+        <span class="picture-time" title={picture ? 'The middle of the picture’s exposure, and its difference from the shown time' : undefined}>
           {picture ? format_time(picture.time) : ''}
           {picture && lag && <em>, {lag}</em>}
         </span>

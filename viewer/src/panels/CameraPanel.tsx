@@ -15,10 +15,10 @@ export function CameraPanel() {
   const scene = viewer.scene.value;
   if (!hello || !scene) return <p class="empty">No data received yet.</p>;
   const { heads, stages } = hello.controls;
-  if (!heads.length && !stages.length) return <p class="empty">No camera here can be moved.</p>;
+  if (!heads.length && !stages.length) return <p class="empty">This rig has no camera that can be moved.</p>;
   return (
     <>
-      <label class="check" title="Shows the true axis positions of the simulated cameras. They differ from the commanded ones by [truth], backlash and motor steps; tasks do not know them.">
+      <label class="check" title="Shows the true axis positions of the simulated cameras. They differ from the commanded ones by [truth], backlash and motor steps; tasks cannot use them.">
         <input type="checkbox" checked={preferences.true_axes.value}
           onChange={(event) => (preferences.true_axes.value = event.currentTarget.checked)} />
         Show where they truly stand

@@ -22,7 +22,7 @@ export function ForcePanel() {
   const hello = viewer.hello.value;
   const scene = viewer.scene.value;
   const state = viewer.shown;
-  if (!hello || !scene || !state) return <p class="empty">The arm’s state has not come yet.</p>;
+  if (!hello || !scene || !state) return <p class="empty">No data received yet.</p>;
   const touches = hello.controls.contact || hello.quantities.some(({ name }) => name === 'contact_force');
   return (
     <>
@@ -48,7 +48,7 @@ function PushFields({ control, state }: { control: PushControl; state: State }) 
   return (
     <fieldset class="section push">
       <legend>Push</legend>
-      <p class="quiet">Shift and drag the arm in the view, or type:</p>
+      <p class="quiet">Hold Shift and drag the arm in the view, or enter a push:</p>
       <Slider id="push-s" label="at s" title="Arc length of the pushed point" value={s.value} span={along} reach={along} scale={1} unit="m"
         places={places} disabled={still} change={(value) => { s.value = value; again(); }} />
       <div class="triple">
@@ -64,7 +64,7 @@ function PushFields({ control, state }: { control: PushControl; state: State }) 
       <div class="push-row">
         <button type="button" class="button" id="push-apply" title="Pushes with this force" disabled={still}
           onClick={() => viewer.commander.push({ s: s.value, force: force.value })}>Apply</button>
-        <button type="button" class="button" id="push-release" title="Pushes no more" disabled={still || !pushed} onClick={() => void viewer.commander.release()}>Release</button>
+        <button type="button" class="button" id="push-release" title="Ends the push" disabled={still || !pushed} onClick={() => void viewer.commander.release()}>Release</button>
       </div>
       <output class="push-state" aria-live="off">
         {state.push

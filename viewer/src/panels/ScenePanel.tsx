@@ -22,7 +22,7 @@ export function ScenePanel() {
         })}
       </ul>
       {hidden.length > 0 && (
-        <button type="button" class="button quiet" title="Hides nothing any more" onClick={() => (preferences.hidden.value = [])}>Show everything</button>
+        <button type="button" class="button quiet" title="Shows all hidden objects again" onClick={() => (preferences.hidden.value = [])}>Show everything</button>
       )}
     </>
   );

@@ -7,7 +7,7 @@ export function WeightSwitch() {
   const off = (viewer.flags.value & flag_weightless) !== 0;
   return (
     <div class="weight">
-      <label class="check" title="In this simulation. Reset brings them back, and a run of tasks has them.">
+      <label class="check" title="Switches weight and loads of the simulated arm on or off. Reset and runs of tasks switch them on.">
         <input type="checkbox" role="switch" id="weight" checked={!off} disabled={viewer.still}
           onChange={(event) => {
             const box = event.currentTarget;
@@ -18,7 +18,7 @@ export function WeightSwitch() {
           }} />
         Apply weight and loads
       </label>
-      {off && <p role="status">Off until Reset; task runs always include them.</p>}
+      {off && <p role="status">Weight and loads are off until Reset; runs of tasks always include them.</p>}
     </div>
   );
 }

@@ -21,5 +21,5 @@ export const left_tabs: Tab[] = [
   { id: 'forces', label: 'Forces', title: 'What pushes the arm, its energies and contacts', Panel: ForcePanel, shown: has_forces },
   { id: 'cameras', label: 'Cameras', title: 'Pan, tilt, zoom and stage of each camera', Panel: CameraPanel },
   { id: 'scene', label: 'Scene', title: 'What the 3D view shows', Panel: ScenePanel },
-  { id: 'events', label: 'Events', title: 'What has happened, with its time', Panel: EventPanel },
+  { id: 'events', label: 'Events', title: 'The events so far, with their times', Panel: EventPanel },
 ];

@@ -24,7 +24,7 @@ export function AxisFields({ place, id, axis }: Props) {
       <LimitField label={`Lower limit of y, plot ${place + 1}`} value={axis.low} change={(low) => take({ ...axis, low })} />
       <span>to</span>
       <LimitField label={`Upper limit of y, plot ${place + 1}`} value={axis.high} change={(high) => take({ ...axis, high })} />
-      <label title="A log scale: each step is ten times the one before; values of 0 and below have no place on it">
+      <label title="Logarithmic scale; values of 0 and below are not shown">
         <input type="checkbox" checked={axis.log}
           onChange={(event) => {
             const box = event.currentTarget;

@@ -67,7 +67,7 @@ export function PlotFrame({ place, options, chosen, names, part, values, host, c
         </ul>
         <span class="plot-tools">
           {is_timed && zoom.value && (
-            <button type="button" class="button quiet" title="Shows the whole time again (double click in the plot)" onClick={() => (zoom.value = null)}>Whole time</button>
+            <button type="button" class="button quiet" title="Shows the whole time range again (same as a double click in the plot)" onClick={() => (zoom.value = null)}>Whole time</button>
           )}
           <button type="button" class="icon-button" aria-expanded={is_open.value} data-set={is_set} aria-label={`Y axis of plot ${place + 1}`}
             title="Limits and scale of the y axis" onClick={() => (is_open.value = !is_open.value)}><Icon name="axis" /></button>

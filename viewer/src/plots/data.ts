@@ -41,7 +41,7 @@ export async function fetch_series(base: string, names: string[], points: number
   address.searchParams.set('names', names.join(','));
   address.searchParams.set('points', String(points));
   const answer = await fetch(address, { credentials: 'same-origin' });
-  if (!answer.ok) throw new Error(`The plot’s data did not come (${answer.status}).`);
+  if (!answer.ok) throw new Error(`The plot’s data were not received (${answer.status}).`);
   const series = (await answer.json()) as Record<string, (number | null)[]>;
   // Missing values interrupt the line.
   const scaled = (values: (number | null)[] = []): (number | null)[] =>

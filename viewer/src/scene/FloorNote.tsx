@@ -12,7 +12,7 @@ export function FloorNote() {
   const depth = obstacle === null ? depth_below(viewer.shown.samples, scene.arm, height) : 0;
   if (depth === 0) return null;
   return (
-    <div class="floor-note" id="floor-note" role="status" title="The floor is drawn to show heights. The experiment has no plane there: nothing stops the arm.">
+    <div class="floor-note" id="floor-note" role="status" title="The floor is drawn only to show heights. The experiment has no plane obstacle there, so nothing stops the arm.">
       The arm passes through the floor by {depth_text(depth)}
     </div>
   );

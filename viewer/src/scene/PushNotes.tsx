@@ -14,7 +14,7 @@ export function PushTool() {
   const on = push_tool.value;
   return (
     <button type="button" class="push-tool" aria-pressed={on} disabled={viewer.still} onClick={() => (push_tool.value = !on)}
-      title="Drag a point of the arm to push it (G). Without the switch: Shift and drag.">
+      title="If on, dragging a point of the arm pushes the arm (G). If off, hold Shift while you drag.">
       <Icon name="hand" />Push
     </button>
   );

@@ -43,12 +43,12 @@ export function Equations({ rows, lengths, at }: Props) {
         <Frac over={<><Func>sin</Func><Sub of="β" by={n} /></>} under={<Sub of="β" by={n} />} />
         <Op>=</Op><N>{len(lengths[at])}</N><Op>·</Op><N>{len(row.cord / lengths[at])}</N><Op>=</Op><N>{len(row.cord)}</N>
       </Equation>
-      <Equation number="5" words="Every section before turns the base of this one by twice its arching; the cord adds this section’s own, once."
+      <Equation number="5" words="Each earlier section turns the base of this section by twice its arching; the cord angle adds this section’s own arching once."
         values={<><Op>=</Op><N>90°</N>{signed(2 * sum)}{signed(row.arching)}<Op>=</Op><N>{deg(row.cord_angle)}</N></>}>
         <Sub of="γ" by={n} /><Op>=</Op><Sub of="γ" by={0} /><Op>+</Op><N>2</N><Op>·</Op>
         <Sum /><Sub of="β" by="k" /><Op>+</Op><Sub of="β" by={n} />
       </Equation>
-      <Equation number="7, 9" words="The next base point lies one cord farther."
+      <Equation number="7, 9" words="The next base point is at the other end of the cord."
         values={<><Op>=</Op><N>{len(row.x)}</N>{signed_length(row.end_x - row.x)}<Op>=</Op><N>{len(row.end_x)}</N></>}>
         <Sub of="x" by={n + 1} /><Op>=</Op><Sub of="x" by={n} /><Op>+</Op><Sub of="c" by={n} /><Func>cos</Func><Sub of="γ" by={n} />
       </Equation>

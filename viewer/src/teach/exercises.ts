@@ -87,7 +87,7 @@ export const exercises: Exercise[] = [
   {
     id: 'cord',
     title: 'The second cord',
-    task: 'The first section has an arching of 30° and stays so. Make the second cord horizontal, pointing left (180°).',
+    task: 'The first section keeps its arching of 30°. Make the second cord horizontal, pointing left (180°).',
     hint: 'Equation 5: the second cord’s angle is 90° + 2 · 30° + its own arching.',
     lengths: [2, 2],
     start: [30 / degree, 0],
@@ -97,7 +97,7 @@ export const exercises: Exercise[] = [
       const off = Math.abs(rows[1].cord_angle - Math.PI);
       return {
         done: kept && off < near,
-        text: kept ? `The second cord is at ${number(rows[1].cord_angle * degree, 1)}°.` : 'Put the first arching back to 30°.',
+        text: kept ? `The second cord is at ${number(rows[1].cord_angle * degree, 1)}°.` : 'Set the first arching to 30° again.',
       };
     },
   },

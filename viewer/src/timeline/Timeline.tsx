@@ -24,7 +24,7 @@ export function Timeline() {
         <button type="button" class="button quiet square" disabled={!ready} aria-label="One step forward" title="One step forward (→)"
           onClick={() => playback.step(1)}><Icon name="next" /></button>
         {live ? (
-          <button type="button" class="button live-button" title="Back from a past instant to now" disabled={!ready || playback.held.value === null}
+          <button type="button" class="button live-button" title="Back from an earlier time to the present" disabled={!ready || playback.held.value === null}
             onClick={() => playback.go_live()}>Now</button>
         ) : (
           <select aria-label="Speed" title="Slower or faster (− +)" value={playback.speed.value}
@@ -59,7 +59,7 @@ function Line() {
     <>
       <output class="time" id="time" aria-live="off">{viewer.freshness.value === 'live' ? 'now' : ''} {said}</output>
       <div class="line">
-        <input type="range" id="scrub" aria-label="Time" title="The instant that is shown" min={from} max={Math.max(to, from + 1e-9)} step="any" value={time}
+        <input type="range" id="scrub" aria-label="Time" title="The time that is shown" min={from} max={Math.max(to, from + 1e-9)} step="any" value={time}
           aria-valuetext={said}
           onInput={(event) => {
             if (!live) playback.pause();

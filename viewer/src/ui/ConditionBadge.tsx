@@ -4,12 +4,12 @@ import { use_app } from './app';
 /** In words for whoever points at it; the reports of runs have the same badges (flexura/report). */
 const meanings: Record<Condition, string> = {
   idle: 'Nothing moves, and no tasks run.',
-  moving: 'The arm goes where it was sent.',
+  moving: 'The arm moves to its commanded shape.',
   running: 'Tasks run.',
-  done: 'The tasks are done, and everything stays where they left it.',
+  done: 'The tasks are done, and nothing has moved since.',
   halted: 'Everything was stopped.',
   failed: 'The tasks failed.',
-  unsafe: 'The arm breaks a limit, or touches what it must not touch.',
+  unsafe: 'The arm violates a limit, or touches something that it must not touch.',
 };
 
 /** The condition of the rig, or of a recorded run at the time that is shown: one badge, the same everywhere. */

@@ -45,7 +45,7 @@ function Refused({ why }: { why: string }) {
           placeholder="http://127.0.0.1:8421/#token=…" onInput={(event) => set_text(event.currentTarget.value)} />
         <button type="submit" class="button primary" title="Connects with this address or token">Connect</button>
       </span>
-      {bad && <span class="bad">There is no token in this: 32 hexadecimal digits behind “#token=”.</span>}
+      {bad && <span class="bad">This text contains no token: expected 32 hexadecimal digits after “#token=”.</span>}
     </form>
   );
 }

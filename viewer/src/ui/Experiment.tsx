@@ -106,7 +106,7 @@ export function Experiment() {
           onScroll={() => (gutter.current!.scrollTop = area.current!.scrollTop)} />
       </div>
       <div class="problems" role="status">
-        {is_long && <p class="fault">Longer than 60 kB: too long to be checked and saved from here. Download it, and check it with <code>flexura check</code>.</p>}
+        {is_long && <p class="fault">This text is longer than 60 kB, which is too long to check and save it here. Download it, and check it with <code>flexura check</code>.</p>}
         {!is_long && problems.value === null && <p>Checking …</p>}
         {!is_long && problems.value?.length === 0 && !saved.value && <p>A valid experiment.</p>}
         {saved.value && <p>Saved: <code>{saved.value}</code>. To open it: <code>flexura view {saved.value}</code></p>}
@@ -115,7 +115,7 @@ export function Experiment() {
             {problems.value.map(({ line, column, text: what }, i) => (
               <li key={i}>
                 {line > 0 && (
-                  <button type="button" class="button quiet" title="Goes to this place"
+                  <button type="button" class="button quiet" title="Goes to this place in the text"
                     onClick={() => { const at = offset_of(text.value ?? '', line, column); select(at, at); }}>
                     {line}:{column}
                   </button>
@@ -130,9 +130,9 @@ export function Experiment() {
         <label title={`A new file in ${folder.value}; none is overwritten`}>
           New file <input type="text" value={name.value} spellcheck={false} onInput={(event) => (name.value = event.currentTarget.value)} />
         </label>
-        <button type="submit" class="button primary" title="Writes the file beside the program’s other files, if the experiment is valid"
+        <button type="submit" class="button primary" title="Saves the text as a new file, if the experiment is valid"
           disabled={text.value === null || is_long || (problems.value?.length ?? 0) > 0}><Icon name="save" />Save</button>
-        <button type="button" class="button" title="Gives the text to the browser, as a file" disabled={text.value === null}
+        <button type="button" class="button" title="Downloads the text as a file" disabled={text.value === null}
           onClick={() => save_file(name.value || 'experiment.toml', text.value ?? '', 'application/toml')}>Download</button>
         <button type="button" class="button quiet" title="Back to the text of the experiment" onClick={() => { editing.value = {}; void load(); }}>
           <Icon name="reset" />Start over

@@ -29,7 +29,7 @@ export function Header() {
         <svg viewBox="0 0 32 32" aria-hidden="true"><path d="M8 27V18C8 9 14 5 19 5s7 4 7 7-2 5-5 5-4-2-4-4" /></svg>
         <span>Flexura</span>
       </a>
-      <h1 class="title">{teaching ? 'The planar arm, by its equations' : (hello?.title ?? '')}</h1>
+      <h1 class="title">{teaching ? 'The planar arm and its equations' : (hello?.title ?? '')}</h1>
       {!teaching && <span class="badge" data-kind={freshness} role="status" title={meaning}>{badge}</span>}
       {!teaching && <ConditionBadge />}
       {!teaching && (viewer.flags.value & flag_weightless) !== 0 && (
@@ -51,7 +51,7 @@ export function Header() {
         {teaching ? (
           <a class="button" href="#/" title="Back to the viewer"><Icon name="back" />Viewer</a>
         ) : (
-          <a class="button quiet" href="#/teach" title="The planar arm, by its equations"><Icon name="teach" />Learn</a>
+          <a class="button quiet" href="#/teach" title="The planar arm and its equations"><Icon name="teach" />Learn</a>
         )}
         <button type="button" class="button quiet square" onClick={toggle_theme}
           aria-label={theme_now() === 'dark' ? 'Light colours' : 'Dark colours'} title="Light or dark (L)">
@@ -86,7 +86,7 @@ function RunSpeed({ running, disabled }: { running: boolean; disabled: boolean }
   if (typeof speed === 'number') {
     const now = chosen.value?.session === session ? chosen.value.speed : speed;
     return (
-      <select aria-label="Speed of the tasks" title="How fast the run plays, compared with real time" disabled={disabled} value={now}
+      <select aria-label="Speed of the tasks" title="Speed of the run relative to real time" disabled={disabled} value={now}
         onChange={async ({ currentTarget: { value } }) => {
           if (await viewer.commander.speed(Number(value))) chosen.value = { session, speed: Number(value) };
         }}>
@@ -96,7 +96,7 @@ function RunSpeed({ running, disabled }: { running: boolean; disabled: boolean }
     );
   }
   return (
-    <select aria-label="Speed of the tasks" title="How fast tasks play, compared with real time" disabled={disabled}
+    <select aria-label="Speed of the tasks" title="Speed of the tasks relative to real time" disabled={disabled}
       value={preferences.run_speed.value}
       onChange={({ currentTarget: { value } }) => viewer.commander.run_speed(Number(value), running)}>
       {run_speeds.map(({ speed, label }) => <option key={speed} value={speed}>{label}</option>)}
@@ -128,7 +128,7 @@ function Rig() {
     return (
       <div class="tools">
         <button type="button" class="button" disabled={!connected} onClick={() => void viewer.commander.branch(viewer.shown?.time ?? 0)}
-          title={`A live rig that starts in the shown instant, ${format_time(instant)}: the arm as commanded and the cameras, at rest. The recording stays.`}>
+          title={`Opens a live rig that starts in the shown state, ${format_time(instant)}: the arm as commanded and the cameras, at rest. The recording stays.`}>
           <Icon name="run" />Start here
         </button>
         {report}
@@ -151,13 +151,13 @@ function Rig() {
           <span class="running-text" title={progress.what}>{progress.what}</span>
           <progress max={1} value={progress.fraction ?? 0} aria-label="Progress of the tasks" />
           <button type="button" class="button" disabled={!connected || viewer.readonly} onClick={ask('cancel')}
-            title={viewer.readonly ? 'The run belongs to the terminal that started it' : 'The run ends early (C)'}>
+            title={viewer.readonly ? 'Only the terminal that started the run can end it' : 'The run ends early (C)'}>
             <Icon name="close" />Cancel
           </button>
         </span>
       )}
       {!running && tasks.length > 1 && (
-        <select aria-label="Tasks to run" title="All tasks, or one alone" value={only.value ?? ''} disabled={!connected || viewer.readonly || viewer.blind}
+        <select aria-label="Tasks to run" title="Run all tasks, or a single one" value={only.value ?? ''} disabled={!connected || viewer.readonly || viewer.blind}
           onChange={({ currentTarget: { value } }) => (only.value = value === '' ? null : Number(value))}>
           <option value="">All tasks</option>
           {tasks.map(({ name, kind }, i) => <option key={i} value={i}>{`${i + 1}: ${name === kind ? name : `${name} (${kind})`}`}</option>)}
@@ -177,7 +177,7 @@ function Rig() {
       {report}
       {/* Halt stays enabled even if the rig does not answer. */}
       <button type="button" class="button danger" disabled={!connected || viewer.readonly} onClick={ask('halt')}
-        title="Everything stops (H or F8, from any field)"><Icon name="halt" />Halt</button>
+        title="Stops everything (H or F8, also while you type in a field)"><Icon name="halt" />Halt</button>
       <button type="button" class="button quiet" disabled={!connected || viewer.still} onClick={ask('reset')}
         title="Reset to the initial state (Backspace)"><Icon name="reset" />Reset</button>
     </div>

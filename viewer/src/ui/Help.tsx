@@ -7,12 +7,12 @@ import { Icon } from './Icon';
 const hand = [
   { keys: ['Drag'], what: 'Turn the view' },
   { keys: ['Right drag, Shift drag'], what: 'Move the view' },
-  { keys: ['Shift drag on the arm'], what: 'Push an elastic arm there; so does any drag with Push switched on (G)' },
+  { keys: ['Shift drag on the arm'], what: 'Push an elastic arm at this point (without Shift if Push is switched on, G)' },
   { keys: ['Wheel'], what: 'Nearer or farther' },
   { keys: ['Double click'], what: 'Centre the view on the point' },
   { keys: ['Click on the arm'], what: 'Pick a point of the backbone' },
   { keys: ['Drag the tip’s handle'], what: 'The arm follows by inverse kinematics' },
-  { keys: ['Drag a slider'], what: 'Set its value; with Shift in fine steps' },
+  { keys: ['Drag a slider'], what: 'Set the slider’s value; with Shift in fine steps' },
   { keys: ['Drag in a plot'], what: 'Zoom in time; a double click shows the whole time' },
   { keys: ['Drag a border'], what: 'Change the size of a panel; a double click restores it' },
   { keys: ['Point at a camera’s picture'], what: 'The pixel’s exact value' },
@@ -31,7 +31,7 @@ export function Help() {
       <header>
         <h2 id="help-title">Keys and mouse</h2>
         <label class="check">
-          <input type="checkbox" title="Whether single keys do something" checked={preferences.keys.value}
+          <input type="checkbox" title="Whether single keys trigger commands" checked={preferences.keys.value}
             onChange={(event) => (preferences.keys.value = event.currentTarget.checked)} />
           Enable keys
         </label>

@@ -11,7 +11,7 @@ export function Hints() {
   const { controls } = hello;
   const hints = [
     { id: 'turn', about: 'turning the view', text: 'Drag to turn the view.', shown: true },
-    { id: 'run', about: 'running tasks', text: 'Run tasks, at the top: the arm does them.', shown: can_move && controls.tasks.length > 0 },
+    { id: 'run', about: 'running tasks', text: 'Click “Run tasks” at the top to start the tasks.', shown: can_move && controls.tasks.length > 0 },
     {
       id: 'move', about: 'moving the arm', shown: can_move,
       text: controls.push ? 'Move a slider, or push the arm: Shift and drag.' : 'Move a slider: the arm follows.',

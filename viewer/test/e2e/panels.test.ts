@@ -266,7 +266,7 @@ describe('a rig’s page', () => {
   test('first hints stand beside the view, and each is gone for good when dismissed', async () => {
     const hints = page.locator('.hints li');
     expect(await hints.allTextContents()).toEqual([
-      'Drag to turn the view.', 'Run tasks, at the top: the arm does them.', 'Move a slider: the arm follows.',
+      'Drag to turn the view.', 'Click “Run tasks” at the top to start the tasks.', 'Move a slider: the arm follows.',
     ]);
     const [stage, strip, plots] = [await box('.stage'), await box('.hints'), await box('.plots')];
     expect(strip.y).toBeGreaterThanOrEqual(stage.y + stage.height - 0.5);

@@ -52,7 +52,7 @@ class ImageLaw {
   [[nodiscard]] ImageStep step(const ArmState& sent, const Eigen::VectorXd& error, const Eigen::MatrixXd& J,
                                double dt) const;
 
-  /// Buffers of step(). Each thread needs its own.
+  /// Buffers of step(). Each thread needs separate buffers.
   struct Work {
     Eigen::MatrixXd normal, factor;  // Lower triangle of J^T J; Cholesky factor of it.
     Eigen::VectorXd x, dx, column;

@@ -63,13 +63,13 @@ struct LimiterFault {
 class CommandLimiter {
  public:
   /// `start`: the command at which the arm is initially at rest. Throws std::invalid_argument if this state
-  /// does not fit the arm, violates a limit or (with looks_ahead) causes a contact. Also throws it for a step
-  /// that is not positive.
+  /// does not fit the arm, violates a limit or (with looks_ahead) causes a contact. Also throws
+  /// std::invalid_argument for a step that is not positive.
   CommandLimiter(ArmModel arm, LimiterConfig config, const ArmState& start);
   CommandLimiter(const Arm& driven, LimiterConfig config, const ArmState& start)
       : CommandLimiter(ArmModel(driven), std::move(config), start) {}
 
-  /// Returns the command for the next step: the allowed one that is nearest to `asked`. Distance is the
+  /// Returns the command for the next step: the allowed command that is nearest to `asked`. Distance is the
   /// Euclidean norm over bends (rad) and stretches. Limits are linearised about the present command. If the
   /// linearisation is too inexact, the command is between the braking command and the nearest one.
   [[nodiscard]] LimitedCommand next(const ArmState& asked);
@@ -85,7 +85,7 @@ class CommandLimiter {
   /// Stops the arm because of a fault, such as an error of a port or a lost estimate. If several faults
   /// occur, keeps the first.
   void fault(const std::string& reason);
-  /// Returns the record of a fault at the current time, with this reason.
+  /// Returns the record of a fault that occurs now because of `reason`.
   [[nodiscard]] LimiterFault record(std::string reason) const {
     return {static_cast<double>(steps_) * config_.step, std::move(reason), observed_, sent_, asked_};
   }

@@ -14,7 +14,7 @@ enum class ElasticityRule : std::uint8_t {
   cancelled,  ///< The law adds dV_e/dx.
   shaped,     ///< V_e is part of the potential. A linear term makes its gradient at the target zero.
   /// The law neglects V_e. This violates a condition of the theory, unless the target has no bend and no
-  /// stretch: then the elastic forces vanish there, and it counts as `shaped`.
+  /// stretch: then the elastic forces vanish at the target, and `ignored` counts as `shaped`.
   ignored,
 };
 

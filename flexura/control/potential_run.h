@@ -31,8 +31,8 @@ class PotentialRun {
   PotentialRun& operator=(const PotentialRun&) = delete;
 
   /// Advances to the time `until`, s. The integrator calls go_on() before every step and stops if go_on()
-  /// returns false. An empty go_on never stops it. Returns false if the run stopped before `until`. Then
-  /// stopped() returns the reason ("cancelled" if go_on() stopped it).
+  /// returns false. An empty go_on never stops the integration. Returns false if the run stopped before
+  /// `until`. Then stopped() returns the reason ("cancelled" if go_on() stopped it).
   [[nodiscard]] bool advance(double until, const std::function<bool()>& go_on = {});
   /// Returns why the run cannot continue, or "".
   [[nodiscard]] const std::string& stopped() const { return stopped_; }

@@ -26,8 +26,8 @@ class Motion {
   Motion& operator=(const Motion&) = delete;
 
   [[nodiscard]] virtual double duration() const = 0;  ///< Returns the duration, s; >= 0.
-  /// Returns the state at `time`, s, in [0, duration()]. Values may be not finite, for example those of a
-  /// user's formula.
+  /// Returns the state at `time`, s, in [0, duration()]. Values may be infinite or NaN, for example those of
+  /// a user's formula.
   [[nodiscard]] virtual ArmState at(double time) const = 0;
   /// Returns bounds on the rates of `section` that hold during all of [start, end], s; std::nullopt if
   /// unknown.

@@ -9,9 +9,10 @@
 #include "flexura/model/drive.h"
 
 // Converts bends to tendon lengths and back (docs/drives.md). Every function throws std::invalid_argument for
-// a tendon that ends at a section that the arm does not have. Also throws it for a state that does not have
-// one bend and one stretch per section. The formulas assume inextensible tendons, and that no tendon is
-// beyond the centre of a bend (curvature times radius below 1).
+// a tendon that ends at a section that the arm does not have. Every function also throws
+// std::invalid_argument for a state that does not have one bend and one stretch per section. The formulas
+// assume inextensible tendons, and that no tendon is beyond the centre of a bend (curvature times radius
+// below 1).
 namespace flexura {
 
 /// Returns the displacement of each tendon, m: the tendon's length along the straight, unstretched arm minus

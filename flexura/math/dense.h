@@ -54,8 +54,8 @@ class Cholesky {
 };
 
 /// Pivoted Cholesky decomposition A = P^T L D L^T P of a symmetric n x n matrix that is positive semidefinite
-/// up to rounding. Uses the lower triangle. In a solution, unknowns with a zero pivot are zero. The result is
-/// undefined for other matrices.
+/// up to rounding. Uses the lower triangle. In a solution, unknowns with a zero pivot are zero. For matrices
+/// that are not positive semidefinite, the result is undefined.
 class PivotedCholesky {
  public:
   PivotedCholesky() = default;

@@ -33,8 +33,9 @@ class DormandPrince {
 
   /// Result of an advance.
   struct Progress {
-    /// Whether the time `until` was reached. If not, the number of steps reached its limit, the step size
-    /// became too small, or go_on() stopped the advance. Then t and y are those of the last accepted step.
+    /// Whether the time `until` was reached. If `until` was not reached, the number of steps reached its
+    /// limit, the step size became too small, or go_on() stopped the advance. Then t and y are those of the
+    /// last accepted step.
     bool is_there = false;
     int steps = 0, taken_back = 0;  ///< Numbers of accepted steps, and of steps rejected for their error.
   };

@@ -5,8 +5,8 @@
 
 namespace flexura {
 
-/// Instruction sets of functions that process several numbers at once. Results are bitwise equal for all of
-/// them.
+/// Instruction sets of functions that process several numbers at once. Results are bitwise equal for all
+/// instruction sets.
 enum class SimdPath {
   baseline,  ///< Available on every processor of the build's architecture. On x86-64: SSE2, two doubles per
              ///< instruction.

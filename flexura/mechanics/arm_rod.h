@@ -27,10 +27,11 @@ namespace flexura {
 /// Loads that follow the end of their section stay in its frame.
 [[nodiscard]] RodLoads loads_of(const ArmConfig& arm);
 
-/// Returns how far each tendon of a rod is pulled in, m, if its sections are arcs bent and stretched as in
-/// `state`. Simulated arms use this function to convert commanded bends into displacements. The pulled-in
-/// length increases with the bend even if the bend is so large that a tendon would pass the arc's centre.
-/// Real rods cannot bend so far. Throws std::invalid_argument if `state` has another number of sections.
+/// Returns how far each tendon of a rod is pulled in, m, if the rod's sections are arcs, bent and stretched
+/// as in `state`. Simulated arms use this function to convert commanded bends into displacements. The
+/// pulled-in length increases with the bend even if the bend is so large that a tendon would pass the arc's
+/// centre. Real rods cannot bend so far. Throws std::invalid_argument if `state` has another number of
+/// sections.
 [[nodiscard]] TendonDisplacements arc_displacements(const Rod& rod, const ArmState& state);
 /// Returns the derivatives of arc_displacements with respect to the (bend_x, bend_y, stretch) of each
 /// section. There is one row per tendon and 3 columns per section. Throws as arc_displacements.

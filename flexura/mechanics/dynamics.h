@@ -23,7 +23,7 @@ struct RodDynamicsConfig {
   /// the steps are longer than the periods of an undamped rod, its energy may grow for values much above 0.1.
   double spectral_radius = 0.1;
   /// Tolerance of the equations of a step, rad/s. The energy of the remaining errors of the rates is at most
-  /// that of the whole rod rotating at this rate.
+  /// the energy of the whole rod rotating at this rate.
   double tolerance = 1e-7;
   int most_iterations = 30;
   /// A step that does not converge is repeated with spectral radius 0 and halved repeatedly, until each piece
@@ -104,9 +104,9 @@ struct RodPayload {
 };
 
 /// Number of parameters of each section. The parameters are relative changes, in this order: of the stiffness
-/// against shear, stretch, bend and twist, of the mass per length, and of the damping. The first five are the
-/// same as in EquilibriumSlopes. Damping does not change with the stiffness. Mass does not include point
-/// masses and payloads.
+/// against shear, stretch, bend and twist, of the mass per length, and of the damping. The first five
+/// parameters are the same as in EquilibriumSlopes. Damping does not change with the stiffness. Mass does not
+/// include point masses and payloads.
 inline constexpr Eigen::Index dynamics_parameters = 6;
 
 /// Derivatives of a rod's motion, p = M(q) v and dp/dt = f(q, v, input). All matrices have a row for each
@@ -123,8 +123,9 @@ struct RodDynamicsSlopes {
 
 /// Linearised motion around a state: x' = A x + B u.
 struct RodLinear {
-  /// Derivatives from which the matrices are computed. If tendons are held and very stiff, they are more
-  /// accurate than A, in which the inverse of an ill-conditioned mass matrix multiplies this stiffness.
+  /// Derivatives from which the matrices are computed. If tendons are held and very stiff, these derivatives
+  /// are more accurate than A, in which the inverse of an ill-conditioned mass matrix multiplies this
+  /// stiffness.
   RodDynamicsSlopes slopes;
   Eigen::MatrixXd A, B;            ///< For x = (q, p).
   Eigen::MatrixXd A_rest, B_rest;  ///< For x = (q, v), valid around a rod at rest.
@@ -177,8 +178,8 @@ class RodDynamics {
   /// were pulled in.
   [[nodiscard]] RodState rest(const Equilibrium& at) const;
   /// Returns the state with modes q and rates v. `tendons` and `loads` act from now on. `slide`: earlier
-  /// state of tendons with friction. Null: they have slid at their present rate for 0.1 s, so friction does
-  /// not hold tendons at rest.
+  /// state of tendons with friction. Null: the tendons are assumed to have slid at their present rate for 0.1
+  /// s, so friction does not hold tendons at rest.
   [[nodiscard]] RodState start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const TendonInput& tendons,
                                const RodLoads& loads, const RodSlide* slide = nullptr);
 
@@ -245,10 +246,10 @@ class RodDynamics {
   /// fit the lengths.
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
                                          const RodLoads& loads, const RodSlide* slide = nullptr);
-  /// Returns the linearised motion around a state. Cost and errors as slopes(). Also throws
-  /// std::invalid_argument if a tendon has friction, which cannot be linearised.
+  /// Returns the linearised motion around a state. Cost, accuracy and exceptions are those of slopes(). Also
+  /// throws std::invalid_argument if a tendon has friction, which cannot be linearised.
   [[nodiscard]] RodLinear linearize(const RodState& state, const TendonInput& tendons, const RodLoads& loads);
-  /// Returns the derivatives of an undivided step. Throws std::runtime_error if it does not converge.
+  /// Returns the derivatives of an undivided step. Throws std::runtime_error if the step does not converge.
   [[nodiscard]] RodStepSlopes step_slopes(const RodState& state, const TendonInput& tendons,
                                           const RodLoads& loads, double h);
 

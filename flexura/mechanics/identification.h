@@ -45,8 +45,8 @@ struct RodMotionRecordSample {
 
 /// Recorded motion of a rod.
 struct RodMotionRecord {
-  std::vector<RodMotionRecordSample>
-      samples;  ///< At least 20. A jump of the tensions is assumed half-way between two samples.
+  std::vector<RodMotionRecordSample> samples;  ///< At least 20. If the tensions jump between two samples, the
+                                               ///< jump is assumed to be half-way between these samples.
   RodLoads loads = {};
   /// Standard deviations of the independent errors of each mode and of its rate. Both empty: unknown and
   /// small.
@@ -62,7 +62,7 @@ struct IdentificationConfig {
 
 /// Result of the identification.
 struct Identification {
-  /// Estimates, in the order of the parameters. Unobservable ones have the given rod's value.
+  /// Estimates, in the order of the parameters. Unobservable parameters have the given rod's value.
   Eigen::VectorXd values;
   /// Standard deviations of the estimates; infinite for unobservable parameters.
   Eigen::VectorXd sigma;
@@ -80,13 +80,12 @@ struct Identification {
 /// Estimates the parameters that fit a record best, by linear least squares of the equations of motion. Each
 /// equation of a mode is multiplied by a smooth bump in time and integrated by parts over a window (weak
 /// form: M. Shinbrot 1957). So no acceleration is needed. With known noise the equations are weighted by
-/// their covariance, propagated from the record to first order. The bias is removed that noise of q and v
-/// causes through the equations' coefficients. With friction, the equations are linearised repeatedly at the
-/// last estimate until the estimate converges (Gauss-Newton method). The iteration starts from the rod's
+/// their covariance, propagated from the record to first order. Noise of q and v in the equations'
+/// coefficients causes a bias, which is removed. With friction, the equations are linearised repeatedly at
+/// the last estimate until the estimate converges (Gauss-Newton method). The iteration starts from the rod's
 /// friction coefficients and, if necessary, from others. If the friction is observable from none of these
-/// starts, the result has the rod's value. Throws
-/// std::invalid_argument for an invalid rod, no parameters, overlapping parameters, or samples that do not
-/// fit the rod. `progress`, if any, follows the iterations.
+/// starts, the result has the rod's value. Throws std::invalid_argument for an invalid rod, no parameters,
+/// overlapping parameters, or samples that do not fit the rod. `progress`, if any, follows the iterations.
 [[nodiscard]] Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
                                       const RodMotionRecord& record, const IdentificationConfig& config = {},
                                       Progress* progress = nullptr);

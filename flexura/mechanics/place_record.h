@@ -41,9 +41,9 @@ struct RodPlaceRecord {
                                               double noise = 0, Progress* progress = nullptr);
 
 /// Simulates the rod under the record's tensions from its first sample on. Returns the root mean square
-/// distance of all places at all times, m; infinity if the motion cannot be computed. Throws
-/// std::invalid_argument as record_of_places(), or if the record does not belong to these samples, and the
-/// errors of RodDynamics. `progress`, if any, is called during the simulation.
+/// distance of all places at all times, m; infinity if the motion cannot be computed. Throws the exceptions
+/// of record_of_places() and RodDynamics, and std::invalid_argument if the record does not belong to these
+/// samples. `progress`, if any, is called during the simulation.
 [[nodiscard]] double places_missed(const Rod& rod, std::span<const RodPlace> places,
                                    std::span<const RodPlaceSample> samples, const RodPlaceRecord& record,
                                    Progress* progress = nullptr);

@@ -10,7 +10,8 @@
 namespace flexura {
 
 /// Drag of a fluid on a rod (docs/mechanics.md, "Drag"). The velocity of the rod relative to the fluid has a
-/// part u across the rod and a part w along it, m/s. The drag per metre of rod, N/m, is opposite to them:
+/// part u across the rod and a part w along it, m/s. The drag per metre of rod, N/m, is opposite to these
+/// velocities:
 ///
 ///     across: density diameter across_coefficient |u| u / 2 + linear_across u
 ///     along:  pi density diameter along_coefficient |w| w / 2 + linear_along w

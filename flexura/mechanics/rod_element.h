@@ -126,7 +126,7 @@ class RodElement {
   /// Strain energy, J.
   double strain_energy = 0;
   /// Length of the shortest straight piece of a taut tendon between two disks, as a fraction of the
-  /// undeformed length of the rod between these disks. It is 1 if there is no such piece.
+  /// undeformed length of the rod between these disks. The value is 1 if there is no such piece.
   double least_chord = 1;
 
  private:

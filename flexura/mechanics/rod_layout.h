@@ -58,7 +58,7 @@ struct RodLayout {
   struct Rubbing {
     std::size_t tendon = 0;
     double friction = 0;
-    std::size_t first = 0;           ///< Index of its first piece among those of all tendons with friction.
+    std::size_t first = 0;  ///< Index of the tendon's first piece among all pieces of tendons with friction.
     std::vector<Piece> pieces = {};  ///< Pieces, in the order from base to end.
   };
 

@@ -90,7 +90,7 @@ struct EquilibriumSlopes {
 /// full load, the rod moves from its last stable shape to a minimum of the energy (RodDescent).
 class RodStatics {
  public:
-  /// Parameters and exceptions as in RodChain.
+  /// Parameters and exceptions are those of RodChain.
   explicit RodStatics(Rod rod, std::span<const RodPlace> places = {});
 
   /// Sets length factors as RodChain::stretch_rest, from the next solution on. Displacements still refer to
@@ -98,7 +98,8 @@ class RodStatics {
   void stretch_rest(std::span<const double> factors);
   /// Solves from the undeformed rod.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads);
-  /// Solves from a nearby equilibrium, or from the undeformed rod if that does not converge directly.
+  /// Solves from a nearby equilibrium, or from the undeformed rod if the solution from `near` does not
+  /// converge directly.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads, const Equilibrium& near);
   /// Returns the equilibrium that a rod with the shape of `near` reaches. If the nearby equilibrium is
   /// stable, it is the result. Otherwise the result is the equilibrium at the end of the descent from `near`.
@@ -106,11 +107,11 @@ class RodStatics {
   /// descent from it found a stable one.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads,
                                    const Equilibrium& near);
-  /// Like settle() with the undeformed rod as start.
+  /// Does the same as settle(), with the undeformed rod as start.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads);
 
-  /// Treatment of slack tendons in slopes(). `hangs`: they have no effect. `is_taut`: they are just taut and
-  /// held, and can also push.
+  /// Treatment of slack tendons in slopes(). `hangs`: slack tendons have no effect. `is_taut`: slack tendons
+  /// count as just taut and held, and can also push.
   enum class Slack { hangs, is_taut };
   /// Returns the derivatives at the last solution. Throws std::logic_error if the last solution did not
   /// converge.

@@ -92,13 +92,15 @@ Table<StepperMotor>& add_limits(Table<StepperMotor>& table) {
                          "straight, unstretched arm.",
               .range = above(0),
               .default_text = "no limit"})
-      .field("pull_out", &StepperMotor::pull_out,
-             {.meaning = "Pull-out torque as pairs [speed in rad/s, torque in N m], in the order of speed. "
-                         "Between the pairs it is interpolated linearly. If a tendon of an elastic arm needs "
-                         "more torque, the motor loses steps.",
-              .range = between(0, 1e9),
-              .count = {1, 1000},
-              .default_text = "no limit"});
+      .field(
+          "pull_out", &StepperMotor::pull_out,
+          {.meaning =
+               "Pull-out torque as pairs [speed in rad/s, torque in N m], in the order of speed. "
+               "Between the pairs, the torque is interpolated linearly. If a tendon of an elastic arm needs "
+               "more torque, the motor loses steps.",
+           .range = between(0, 1e9),
+           .count = {1, 1000},
+           .default_text = "no limit"});
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace flexura {
 
 /// Converts times of a device's clock to times of the rig's clock. If the device's times do not decrease, the
-/// results do not decrease either. The only exception is that previous results turn out to be too late.
+/// results do not decrease either. The results decrease only if previous results turn out to be too late.
 class MappedTime {
  public:
   /// `clock` must outlive this object.

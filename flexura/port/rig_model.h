@@ -19,8 +19,8 @@ struct RigModel {
   Arm arm;                         ///< Arm with one section per arc.
   std::vector<double> bend_gains;  ///< Factor on each arc's bend; empty: all 1.
   std::vector<CameraConfig> cameras;
-  /// If any section has several arcs: the arm in terms of the sections that the drives bend. Otherwise an arm
-  /// without sections.
+  /// If any section has several arcs: the arm in terms of the sections that the drives bend. If every section
+  /// is a single arc: an arm without sections.
   Arm driven = {};
   /// Conversion of commands to shapes, if any section has several arcs; otherwise the identity.
   Actuation actuation = {};

@@ -56,8 +56,9 @@ struct SensorRows {
 class Sensor {
  public:
   /// Throws std::invalid_argument for a size below 1 or above 2^20, a PSF above 30 px, or bits outside 1 to
-  /// 16. Also throws it for a negative or infinite strength of an effect, and for a gain or gamma that is not
-  /// positive. The same exception is thrown for an instruction set that the processor does not support.
+  /// 16. Also throws std::invalid_argument for a negative or infinite strength of an effect, and for a gain
+  /// or gamma that is not positive. The same exception is thrown for an instruction set that the processor
+  /// does not support.
   explicit Sensor(const SensorConfig& config, SimdPath path = best_simd_path());
 
   [[nodiscard]] const SensorConfig& config() const { return config_; }

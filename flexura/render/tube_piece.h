@@ -108,8 +108,8 @@ struct NearMisses {
                                    const DepthRange& range);
 
 /// Returns the depth of first_minimum(), or an earlier depth at which the ray's inward motion is slowest
-/// before it becomes faster again. At such a depth, a small step in the image can open a gap. `has_entered`:
-/// `depth` is in the previous piece.
+/// before it becomes faster again. At such a depth, a ray through a nearby image point may leave the piece
+/// and enter the piece again. `has_entered`: `depth` is in the previous piece.
 [[nodiscard]] double first_slowdown(const TubePiece& piece, const LocalRay& ray, double depth,
                                     const DepthRange& range, bool has_entered);
 

@@ -30,8 +30,8 @@ class RodInputs {
 
   /// Implements Plant::command().
   void command(double time, const Eigen::VectorXd& u, double duration);
-  /// Implements Plant::halt(). The following functions up to pulled() also implement the functions of Plant
-  /// with their names.
+  /// Implements Plant::halt(). The following functions, up to pulled(), implement the functions of Plant that
+  /// have equal names.
   void halt(double time);
   /// Pulls the tendons individually.
   std::optional<ArmState> pull(double time, const std::vector<double>& displacements, double duration);

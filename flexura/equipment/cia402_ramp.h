@@ -12,8 +12,8 @@ class Cia402Ramp {
 
   /// Sets position and velocity at `now`, s; the axis then keeps its velocity.
   void set(double now, double position, double velocity = 0);
-  /// Moves to `target` from time `now`, s, on, at up to `speed` > 0, with this acceleration and deceleration
-  /// > 0. If the axis cannot stop before the target, it overshoots and returns.
+  /// Starts to move to `target` at time `now`, s, at a speed of at most `speed` > 0, with the given
+  /// acceleration and deceleration > 0. If the axis cannot stop before the target, it overshoots and returns.
   void move(double now, double target, double speed, double acceleration, double deceleration);
   /// Brakes from `now` on.
   void stop(double now, double deceleration);

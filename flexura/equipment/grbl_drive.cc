@@ -166,7 +166,7 @@ Outcome<GrblDrive::Report> GrblDrive::checked_report() {
   }
   const auto stopped = stop_and_locate(true);
   if (!stopped) return *stopped.fault();
-  return refuse("the motors were not on the way that was commanded; they have been stopped");
+  return refuse("the motors were not on the commanded path; they have been stopped");
 }
 
 CommandOutcome GrblDrive::brake() {

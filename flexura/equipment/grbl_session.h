@@ -53,8 +53,8 @@ class GrblSession {
   CommandOutcome act(char byte);
   /// Resets the controller and waits for its banner for at most `timeout` s.
   CommandOutcome reset(double timeout);
-  /// Finds out again which answer belongs to which line, after a loss. Waits for the answer to a request
-  /// whose answer is unmistakable.
+  /// After a loss of answers, finds out again which answer belongs to which line. Sends a request whose
+  /// answer cannot be confused with any other answer, and waits for the answer.
   CommandOutcome resynchronize();
   /// Reads what has arrived, without waiting.
   CommandOutcome drain();

@@ -29,8 +29,8 @@ class Link {
   /// Waits until bytes arrive, for at most `timeout` s, >= 0. Returns what has arrived: at most 64 KiB, over
   /// UDP the next datagram, over CAN the next frame. Returns "" if nothing arrived.
   [[nodiscard]] virtual Outcome<std::string> read(double timeout) = 0;
-  /// Returns the open file descriptor, which the link owns; -1 if the link has none. Guard gives a copy of it
-  /// to the process that stops devices when this program crashes.
+  /// Returns the open file descriptor, which the link owns; -1 if the link has none. Guard passes a copy of
+  /// the descriptor to the process that stops devices when this program crashes.
   [[nodiscard]] virtual int descriptor() const { return -1; }
 };
 
@@ -68,7 +68,7 @@ struct SerialPair {
   std::string path;              ///< Path of the other end, for open_link().
   Descriptor kept;               ///< Keeps the other end open while no program uses it.
 };
-/// Returns a pseudoterminal. Throws std::runtime_error if the system has none left.
+/// Returns a pseudoterminal. Throws std::runtime_error if the system has no free pseudoterminal.
 [[nodiscard]] SerialPair open_serial_pair();
 
 }  // namespace flexura

@@ -16,7 +16,8 @@ struct HttpMessage {
   std::string authenticate;   ///< Kinds of login that a reply asks for (header WWW-Authenticate).
   std::string body;           ///< Body, without chunked encoding.
   bool keeps_open = false;    ///< Whether the connection may carry another message.
-  bool is_delimited = false;  ///< Whether the end of the body is marked, not just the end of the connection.
+  bool is_delimited = false;  ///< Whether the message marks the end of its body; otherwise the connection's
+                              ///< end is the body's end.
 };
 
 /// Finds messages in a stream of bytes. Messages have a limited size: 16 KiB of headers and 1 MiB of body.

@@ -19,10 +19,9 @@ struct OdeTolerance {
   int most_steps = 1'000'000;  ///< Largest number of steps in one advance, including rejected steps.
 };
 
-/// Solves dy/dt = f(t, y) by the explicit Runge-Kutta pair of order 5(4) with adaptive steps (J. R. Dormand,
-/// P. J. Prince, "A family of embedded Runge-Kutta formulae", 1980). The step size rule is from E. Hairer, S.
-/// P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", II.4. Allocates nothing after the
-/// constructor.
+/// Solves dy/dt = f(t, y) by the explicit Runge-Kutta pair of order 5(4) with adaptive steps (Dormand,
+/// Prince, "A family of embedded Runge-Kutta formulae", 1980). The step size rule is from Hairer, Norsett,
+/// Wanner, "Solving Ordinary Differential Equations I", II.4. Allocates nothing after the constructor.
 class DormandPrince {
  public:
   /// Makes a solver for `size` components of y.

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-// The Levenberg-Marquardt method (K. Levenberg 1944, D. W. Marquardt 1963), which all minimizers of the
+// The Levenberg-Marquardt method (Levenberg 1944, Marquardt 1963), which all minimizers of the
 // library share. Each problem defines its unknowns and the computation of a damped step.
 namespace flexura {
 

@@ -21,10 +21,10 @@ template <typename Value>
           Value(10.0 / 3 * h * (first - 2 * second + third))};
 }
 
-/// A step of the Magnus expansion (S. Blanes, F. Casas, J. A. Oteo, J. Ros, "The Magnus expansion and some of
-/// its applications", 2009, sec. 5.5.1). Let X(s) be the pose with X' = X hat(x(s)) and X(0) = 1, where x is
-/// a strain. The step computes the twist T with X(h) = exp(T), accurate to the sixth power of h and exact for
-/// a constant x. The input of the step is the moments a of x (magnus_moments).
+/// A step of the Magnus expansion (Blanes, Casas, Oteo, Ros, "The Magnus expansion and some of its
+/// applications", 2009, sec. 5.5.1). Let X(s) be the pose with X' = X hat(x(s)) and X(0) = 1, where x is a
+/// strain. The step computes the twist T with X(h) = exp(T), accurate to the sixth power of h and exact for a
+/// constant x. The input of the step is the moments a of x (magnus_moments).
 class MagnusStep {
  public:
   using Moments = std::array<Vector6d, 3>;

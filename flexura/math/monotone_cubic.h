@@ -6,10 +6,10 @@
 namespace flexura {
 
 /// A piecewise cubic curve through points, with a continuous slope and without overshoot. Between two points
-/// the curve increases if the points increase, and decreases if the points decrease (F. N. Fritsch, J.
-/// Butland, "A method for constructing local monotone piecewise cubic interpolants", 1984). The slope at each
-/// end is computed from three points and limited so that the end piece is monotone. For points on a straight
-/// line, the curve is this line.
+/// the curve increases if the points increase, and decreases if the points decrease (Fritsch, Butland, "A
+/// method for constructing local monotone piecewise cubic interpolants", 1984). The slope at each end is
+/// computed from three points and limited so that the end piece is monotone. For points on a straight line,
+/// the curve is this line.
 class MonotoneCubic {
  public:
   /// Makes the curve through the points (x[i], y[i]). A single point gives a constant. Throws

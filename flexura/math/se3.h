@@ -28,7 +28,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 /// body twist. Smooth through 0.
 [[nodiscard]] Pose se3_exp(const Vector6d& twist);
 
-/// Exponential X_AB of a twist t, with its first two derivatives, in closed form (J. M. Selig, Geometric
+/// Exponential X_AB of a twist t, with its first two derivatives, in closed form (Selig, Geometric
 /// Fundamentals of Robotics, sec. 4.4). Accurate also for small t.
 struct TwistExponential {
   /// Computes the exponential of a twist, with its first derivative.

@@ -25,7 +25,7 @@ struct RodStepFactor {
 struct RodDynamics::Work {
   Work(Rod rod, const RodDynamicsConfig& given, std::span<const RodPlace> places);
 
-  /// Generalized alpha of first order (K. E. Jansen, C. H. Whiting, G. M. Hulbert 2000).
+  /// Generalized alpha of first order (Jansen, Whiting, Hulbert 2000).
   struct Scheme {
     explicit Scheme(double rho)
         : alpha_f(1 / (1 + rho)),

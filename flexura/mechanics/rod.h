@@ -101,7 +101,7 @@ struct TendonRoute {
   std::vector<double> x = {}, y = {};  ///< Coefficients of powers of s: m, m/m, ...
   double compliance = 0;               ///< Extension per newton, m/N; >= 0. Used with displacements only.
   /// Coulomb friction coefficient; >= 0. While the tendon is pulled in, its tension after a wrap angle from
-  /// the base is exp(-friction * angle) times the tension at the base (L. Euler, J. Eytelwein).
+  /// the base is exp(-friction * angle) times the tension at the base (Euler, Eytelwein).
   double friction = 0;
 
   /// Offset in the cross-section and its first two derivatives with respect to s; z is 0.

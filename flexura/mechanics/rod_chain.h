@@ -29,8 +29,8 @@ struct RodNode {
 /// frame of the base.
 ///
 /// Proximal elements affect an element only by the twist of its base, and distal elements only by a wrench.
-/// So the modes are eliminated element by element from tip to base, as in the articulated-body algorithm (R.
-/// Featherstone, Rigid Body Dynamics Algorithms, ch. 7).
+/// So the modes are eliminated element by element from tip to base, as in the articulated-body algorithm
+/// (Featherstone, Rigid Body Dynamics Algorithms, ch. 7).
 class RodChain {
  public:
   /// `places` become nodes, so that their poses need no interpolation. Throws std::invalid_argument for an

@@ -23,8 +23,8 @@ class RodDescent {
     bool is_held = false;
     double length = 0;      ///< Path length above which a held tendon pulls, m.
     double compliance = 0;  ///< Compliance, m/N; > 0 for a held tendon.
-    /// Additional compliance of a held tendon around the value `tension`, m/N (augmented Lagrangian: M.
-    /// Hestenes, M. J. D. Powell 1969). The final tension is returned as `tension`.
+    /// Additional compliance of a held tendon around the value `tension`, m/N (augmented Lagrangian:
+    /// Hestenes, Powell 1969). The final tension is returned as `tension`.
     double penalty = 0;
   };
 

@@ -85,9 +85,9 @@ struct EquilibriumSlopes {
       q_by_parameters;  ///< Derivatives of q with respect to these parameters, size() x (5 sections).
 };
 
-/// Solves rods for equilibrium: minima of their energy in reduced strains (F. Boyer, F. Renda et al.,
-/// geometric variable strain). Newton's method follows the load path from zero load. If the path ends before
-/// full load, the rod moves from its last stable shape to a minimum of the energy (RodDescent).
+/// Solves rods for equilibrium: minima of their energy in reduced strains (Boyer, Renda et al., geometric
+/// variable strain). Newton's method follows the load path from zero load. If the path ends before full load,
+/// the rod moves from its last stable shape to a minimum of the energy (RodDescent).
 class RodStatics {
  public:
   /// Parameters and exceptions are those of RodChain.

@@ -10,7 +10,7 @@ enum class AngleBasis {
   /// One polynomial along the whole arm. The coordinates are the polynomial's values at Gauss-Legendre nodes.
   polynomial,
   /// Linear in every section. The coordinates are the angle's values at the sections' ends, and at the base
-  /// if it is free.
+  /// if the base is free.
   sections,
 };
 

@@ -27,7 +27,7 @@ class BroydenEstimate {
 };
 
 /// Recursive least squares with forgetting: J is the least-squares fit to all motions, with smaller weights
-/// for older ones (Ljung, "System Identification", 11.2).
+/// for older motions (Ljung, "System Identification", 11.2).
 class RecursiveEstimate {
  public:
   /// `forgetting` in (0, 1]: factor by which each new motion multiplies the weights of earlier motions.

@@ -18,7 +18,7 @@ namespace flexura {
 class ContactWatch;
 struct ConvexLimits;
 
-/// Limits of a limiter, in addition to those of the arm.
+/// Limits of a limiter, in addition to the limits of the arm.
 struct LimiterConfig {
   double step = 1.0 / 30;  ///< Time between commands, s; > 0.
   std::optional<Drive> drive =

@@ -18,7 +18,8 @@ enum class ElasticityRule : std::uint8_t {
   ignored,
 };
 
-/// Gains of the law. The defaults satisfy the theory; other values can violate it, to show the effects.
+/// Gains of the law. The defaults satisfy the conditions of the theory. Other values can violate these
+/// conditions, to show the effects.
 struct PotentialGains {
   Eigen::Vector2d stiffness = {20, 20};  ///< k_theta and k_q, N m per length (m) and rad; > 0.
   Eigen::Matrix2d damping =
@@ -60,8 +61,8 @@ class PotentialLaw {
 
   /// Returns the target coordinates.
   [[nodiscard]] const Eigen::VectorXd& target() const { return target_; }
-  /// Returns the gains in effect. `elasticity` is `shaped` instead of `ignored` if elastic forces vanish at
-  /// the target.
+  /// Returns the gains that the law uses. `elasticity` is `shaped` instead of `ignored` if elastic forces
+  /// vanish at the target.
   [[nodiscard]] const PotentialGains& gains() const { return gains_; }
 
  private:

@@ -17,8 +17,8 @@ namespace flexura {
 /// law uses the arm's exact angles or measurements. With measurements, the potential's force and the
 /// compensation of gravity and elasticity use the last measured shape and stay constant until the next
 /// measurement. With two image planes, the potential's force uses the plane errors (eq. 14). The damping
-/// always uses the arm's true rates, because it is part of the drives. With few drives, the force on the arm
-/// is the one nearest to the law's force that the drives can produce.
+/// always uses the arm's true rates, because the drives themselves produce the damping. With few drives, the
+/// force on the arm is the one nearest to the law's force that the drives can produce.
 class PotentialRun {
  public:
   /// `start`: coordinates of the arm at the start, where it is at rest. `drives`: the matrix G

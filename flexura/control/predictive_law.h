@@ -47,8 +47,8 @@ struct PredictiveState {
 ///   sum over k of |e_k|^2 + rho |a_k / step|^2,
 /// where e_k is the predicted distance from the target, root mean square along the arm, share of its length.
 /// The prediction is linear about the present command. Commands change the equilibrium shape according to its
-/// derivative and excite the modes, which oscillate freely in between. Limits are those of bends and bend
-/// rates, and the given linear limits (PredictiveLimit); stretches are not limited. The solver is the
+/// derivative and excite the modes, which oscillate freely in between. The law limits bends and bend rates,
+/// and satisfies the given linear limits (PredictiveLimit); stretches are not limited. The solver is the
 /// alternating direction method of multipliers (Boyd et al., 2011), with projections on discs and
 /// half-spaces. The iterations of this method satisfy the limits approximately. The next command satisfies
 /// the limits of bends and rates exactly. A limiter must check the command.

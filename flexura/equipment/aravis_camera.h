@@ -39,8 +39,8 @@ const Table<AravisConfig>& fields_of(const AravisConfig*);
 [[nodiscard]] std::vector<std::string> aravis_cameras();
 
 /// Starts a camera with the size, channels and frame rate of `camera.sensor`: Mono8 or RGB8. If the image is
-/// smaller than the camera's sensor, it shows the middle of the sensor. A thread connects, and reconnects
-/// after a loss. Lost frames are counted by the camera's frame numbers.
+/// smaller than the camera's sensor, the image shows the middle of the sensor. A thread connects, and
+/// reconnects after a loss. Lost frames are counted by the camera's frame numbers.
 ///
 /// Frame::time is the camera's time stamp plus half of the exposure time that the camera reports. This
 /// assumes that the time stamp is the start of the exposure. Use ClockedCamera for times on the rig's clock.

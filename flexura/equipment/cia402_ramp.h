@@ -40,7 +40,7 @@ class Cia402Ramp {
 
 /// Returns the cruising speed, > 0, with which an axis moves by `distance` in `duration` s and stops there.
 /// The axis starts with `velocity`, positive towards the target, and accelerates and brakes with
-/// `acceleration`. The result is at most `most`; it is `most` if the duration is too short.
+/// `acceleration`. The result is at most `most`, and equals `most` if the duration is too short.
 [[nodiscard]] double cia402_speed(double distance, double velocity, double duration, double acceleration,
                                   double most);
 

@@ -63,7 +63,7 @@ class Guard : public Watchdog {
 
   [[nodiscard]] double period() const override { return period_; }
 
-  /// Protects the device at a link from now on: `stop` are the messages that stop it. Throws
+  /// Protects the device at a link from now on: `stop` are the messages that stop the device. Throws
   /// std::invalid_argument if the link has no descriptor, there are too many messages or links, or a message
   /// is too long. Throws std::runtime_error if the second process does not answer.
   void protect(const Link& link, const StopMessages& stop);

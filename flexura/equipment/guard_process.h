@@ -42,7 +42,7 @@ struct GuardMessage {
 enum class GuardAnswer : char { ready = 'r', stopped = 's' };
 
 /// Decides which stop messages are sent at which time. A GuardWatch has neither a clock nor sockets, so that
-/// tests can run it in simulated time. Allocates no memory.
+/// tests can run a GuardWatch in simulated time. Allocates no memory.
 class GuardWatch {
  public:
   /// `period`: longest time between beats while the arm moves, s.

@@ -38,8 +38,8 @@ struct OnvifTiltConfig : OnvifTurnConfig {};
 struct OnvifZoomConfig {
   /// Zoom positions in the head's unit, ascending; at least 2. The first and the last limit the commands.
   std::vector<double> points = {0, 1};
-  /// Zoom position (HeadState::zoom) at each of the points, ascending. Between the points it is interpolated
-  /// linearly. Default: the points.
+  /// Zoom position (HeadState::zoom) at each of the points, ascending. Between the points, the zoom position
+  /// is interpolated linearly. Default: the points.
   std::optional<std::vector<double>> positions = {};
   double tolerance =
       0.01;  ///< Largest distance from the target at which zooming counts as done, in the head's unit.

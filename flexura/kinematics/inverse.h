@@ -117,7 +117,7 @@ struct InverseResult {
 [[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
                                                                const InverseConfig& config = {});
 /// Returns the distinct commands that reach a target. Two commands count as equal if an arm of single-arc
-/// sections would have equal backbones for them.
+/// sections would have equal backbones for these commands.
 [[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const ArmModel& model, const TipTarget& target,
                                                                const InverseConfig& config = {});
 

@@ -29,7 +29,7 @@ struct Found {
 };
 
 /// Descends from one start after another until a solution is found. Stops after `max_starts` starts,
-/// including those already counted in `found`.
+/// including the starts already counted in `found`.
 void search(BoundedDescent& descent, InverseStarts& starts, int max_starts, Found& found);
 
 /// Moves a result that is not a solution to its local minimum, with at most `iterations` iterations. Gradient

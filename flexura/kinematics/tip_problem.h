@@ -17,9 +17,9 @@ enum class TipRows { position = 3, direction = 5, rotation = 6 };
 /// direction has two such rows (about x and y), and a target rotation has three.
 ///
 /// The orientation rows of J in linearise() are the angular velocity, not the derivative of the rotation
-/// vector e. The matrix that converts between them has e as an eigenvector with eigenvalue 1. Hence the
-/// gradient of |e|^2 and the undamped Gauss-Newton step are equal for both. The angular velocity has the
-/// advantage that it has no singular orientation.
+/// vector e. The matrix that converts the angular velocity to this derivative has e as an eigenvector with
+/// eigenvalue 1. Hence the gradient of |e|^2 and the undamped Gauss-Newton step are equal for both. The
+/// angular velocity has the advantage that it has no singular orientation.
 class TipProblem final : public BoundedProblem {
  public:
   /// `X_BT` is the target pose of the tip in the base's frame. TipRows::position uses only its position;

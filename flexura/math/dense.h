@@ -84,7 +84,7 @@ class PivotedCholesky {
 /// Returns the minimum-norm least-squares solution: the x of smallest norm that minimizes |A x - b|.
 [[nodiscard]] Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
-/// Returns the Moore-Penrose inverse; for an m x n matrix it is n x m.
+/// Returns the Moore-Penrose inverse; for an m x n matrix the inverse is n x m.
 [[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
 
 /// Returns the rank, computed by QR decomposition with column pivoting. Pivots below `threshold` times the

@@ -16,9 +16,9 @@
 namespace flexura {
 
 /// Returns the elastic rod of an arm described by a file, in the frame of the arm's base. The rod has the
-/// tendons of `[[arm.tendon]]`. If there are none, it has the tendons of `drive`, and the drive's disks in
-/// sections without disks of their own. Throws std::invalid_argument if a section has no material; other keys
-/// were checked by the file's reader.
+/// tendons of `[[arm.tendon]]`. If there are none, the rod has the tendons of `drive`, and the drive's disks
+/// in sections without disks of their own. Throws std::invalid_argument if a section has no material; other
+/// keys were checked by the file's reader.
 [[nodiscard]] Rod rod_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 /// Returns the rod of an arm without a drive.
 [[nodiscard]] Rod rod_of(const ArmConfig& arm);

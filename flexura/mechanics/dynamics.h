@@ -58,12 +58,12 @@ struct RodState {
   Eigen::VectorXd momentum;      ///< p = M(q) v.
   std::vector<double> tensions;  ///< Tensions of the last step at the base, N.
   /// Friction forces on the tendons with friction, N. The forces along the first tendon come first, from the
-  /// base on, then those along the next tendon. Friction forces are part of the state.
+  /// base on, then the forces along the next tendon. Friction forces are part of the state.
   std::vector<double> friction;
 
   Eigen::VectorXd rate;   ///< dq/dt of the integrator.
   Eigen::VectorXd force;  ///< dp/dt of the integrator.
-  /// Rates in the last steps, newest first. The next step starts its iteration from them.
+  /// Rates in the last steps, newest first. The next step starts its iteration from these rates.
   std::array<Eigen::VectorXd, 3> middle;
   int middles = 0;           ///< Number of valid entries of `middle`.
   double step = 0;           ///< Length of the last step, s.
@@ -84,7 +84,7 @@ struct RodStep {
   DynamicsEnd end = DynamicsEnd::converged;
   std::string problem = {};  ///< Description of bad input.
   int iterations = 0;        ///< Number of linear systems solved.
-  int pieces = 1;            ///< Number of pieces that the step was divided into; 0: it did not converge.
+  int pieces = 1;  ///< Number of pieces that the step was divided into; 0: the step did not converge.
   /// Whether the first attempt failed to converge (RodDynamicsConfig::most_pieces).
   bool is_anew = false;
   /// Work done against tendon friction, J. Includes energy stored elastically before sliding.
@@ -162,14 +162,15 @@ class RodDynamics {
   RodDynamics& operator=(RodDynamics&&) noexcept;
 
   /// Sets the surroundings, whose wrenches act in addition to tendons and loads; the object keeps a reference
-  /// to them. Null: no surroundings. Throws std::invalid_argument if one of their points is outside the rod.
+  /// to the surroundings. Null: no surroundings. Throws std::invalid_argument if one of their points is
+  /// outside the rod.
   void set_surroundings(const RodSurroundings* surroundings);
 
   /// From now on multiplies each section's undeformed length by a factor > 0 that changes at a rate, 1/s
-  /// (RodChain::stretch_rest). Both lists have one number per section. For a step the factors must be those
-  /// at the time for which the tendons are given (see step()). The state does not change. Kinetic energy and
-  /// momentum include the driven motion. Throws std::invalid_argument for lists of wrong length, factors that
-  /// are not positive, or rates that are not finite.
+  /// (RodChain::stretch_rest). The lists of factors and rates have one number per section. For a step the
+  /// factors must be those at the time for which the tendons are given (see step()). The state does not
+  /// change. Kinetic energy and momentum include the driven motion. Throws std::invalid_argument for lists of
+  /// wrong length, factors that are not positive, or rates that are not finite.
   void stretch_rest(std::span<const double> factors, std::span<const double> rates);
 
   /// Returns the unloaded rod at rest.
@@ -242,8 +243,8 @@ class RodDynamics {
 
   /// Returns the derivatives at a state. The computing time grows with the square of the number of sections.
   /// `slide` as in start(). Tensions of tendons of given displacement are computed from the tendon lengths.
-  /// This is inaccurate for stiff tendons. So for a rod at rest, RodState::tensions are used instead if they
-  /// fit the lengths.
+  /// This is inaccurate for stiff tendons. So for a rod at rest, RodState::tensions are used instead if these
+  /// tensions fit the lengths.
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
                                          const RodLoads& loads, const RodSlide* slide = nullptr);
   /// Returns the linearised motion around a state. Cost, accuracy and exceptions are those of slopes(). Also

@@ -95,8 +95,8 @@ struct RodDynamics::Work {
   /// at q and v if tendons have friction.
   void find_parameter_slopes(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const RodLoads& loads,
                              RodDynamicsSlopes& slopes);
-  /// Returns the derivatives at the present shape, also those with respect to the input. Tensions are those
-  /// of `tendons`.
+  /// Returns the derivatives at the present shape, also those with respect to the input. The tensions are
+  /// those in `tendons`.
   [[nodiscard]] RodDynamicsSlopes slopes_at(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                             const TendonInput& tendons, const RodLoads& loads);
   /// Solves the stage of a step that starts at `state`; q and v become those of the stage.

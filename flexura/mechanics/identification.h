@@ -25,7 +25,7 @@ struct RodParameter {
     /// damping.
     damping,
     mass,      ///< Factor on the mass of the whole rod: inertia and weight.
-    friction,  ///< Friction coefficient of all tendons, or of those that end at the section.
+    friction,  ///< Friction coefficient of all tendons, or of the tendons that end at the section.
   };
   Kind kind = Kind::bends;
   std::optional<std::size_t> section = {};  ///< Default: all sections together. Must be omitted for a mass.
@@ -48,8 +48,8 @@ struct RodMotionRecord {
   std::vector<RodMotionRecordSample> samples;  ///< At least 20. If the tensions jump between two samples, the
                                                ///< jump is assumed to be half-way between these samples.
   RodLoads loads = {};
-  /// Standard deviations of the independent errors of each mode and of its rate. Both empty: unknown and
-  /// small.
+  /// Standard deviations of the independent errors of each mode and of its rate. If both lists are empty, the
+  /// errors are unknown and small.
   Eigen::VectorXd q_noise = {}, v_noise = {};
 };
 

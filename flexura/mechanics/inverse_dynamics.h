@@ -31,7 +31,7 @@ struct TensionFitConfig {
 struct TensionFit {
   std::vector<double> tensions;  ///< Tensions, N, one per tendon, each from 0 to its maximum.
   Eigen::VectorXd desired;       ///< Target generalized forces.
-  Eigen::VectorXd missing;       ///< Remaining forces: target minus those of the tensions.
+  Eigen::VectorXd missing;       ///< Remaining forces: target forces minus the forces of the tensions.
   /// Elastic energies that the rod would store under the target forces, and under the missing forces, J. If
   /// no tension reduces the missing forces, both energies are equal.
   double desired_energy = 0, missing_energy = 0;

@@ -27,7 +27,7 @@ struct StrainModes {
   /// If false, the modes are those of the whole section, which is inaccurate for strongly bent pieces.
   bool by_piece = true;
 
-  /// The rod moves only in its xz plane: it bends about y, without twist or shear along y.
+  /// The rod moves only in its xz plane: the rod bends about y, without twist or shear along y.
   bool planar = false;
 
   /// Returns the numbers of the six strains, in their order.
@@ -66,7 +66,7 @@ struct RodSection {
   /// Empty: straight.
   std::vector<Eigen::Vector3d> rest_curvature = {};
   std::vector<PointMass> masses = {};
-  /// Tendons run straight between guide disks that divide the section into this many equal pieces. 0: they
+  /// Tendons run straight between guide disks that divide the section into this many equal pieces. 0: tendons
   /// run in a continuous channel.
   int disks = 0;
   StrainModes modes = {};
@@ -89,9 +89,9 @@ struct RodSection {
   [[nodiscard]] Vector6d rest_strain_slope_at(double t) const;
 };
 
-/// Path of a tendon from the rod's base through all sections to the end of one, where it is fastened. At
-/// undeformed arc length s m from the base it passes the cross-section at (x(s), y(s)) + r(s) (cos a(s), sin
-/// a(s)). Here r = radius + radius_slope s and a = angle + angle_slope s.
+/// Path of a tendon from the rod's base through all sections to the end of one section, where the tendon is
+/// fastened. At undeformed arc length s m from the base, the tendon passes the cross-section at (x(s), y(s))
+/// + r(s) (cos a(s), sin a(s)). Here r = radius + radius_slope s and a = angle + angle_slope s.
 struct TendonRoute {
   std::size_t section = 0;             ///< Section at whose end the tendon is fastened, 0 at the base.
   double radius = 0;                   ///< m

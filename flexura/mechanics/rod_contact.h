@@ -160,7 +160,7 @@ class RodContact final : public RodSurroundings {
   mutable std::vector<Meeting> meetings_;
 };
 
-/// Returns places along a rod, section ends included, with at most `spacing` m between them. At this spacing,
+/// Returns places along a rod, section ends included, at distances of at most `spacing` m. At this spacing,
 /// obstacles of the size `spacing` are detected. Throws std::invalid_argument for a spacing that is not
 /// positive, or that makes more than 10,000 places.
 [[nodiscard]] std::vector<RodPlace> contact_places(const Rod& rod, double spacing);

@@ -46,7 +46,7 @@ struct RodLayout {
   };
 
   /// A piece of a tendon with friction in which the tension is constant: around a node of a channel, or
-  /// between two disks. Friction acts between a piece and the one before it.
+  /// between two disks. Friction acts between a piece and the previous piece.
   struct Piece {
     std::size_t section = 0;
     std::size_t at = 0;  ///< Node of the section, or number of the chord between its disks.
@@ -66,7 +66,7 @@ struct RodLayout {
 
   /// The following functions return the index of the element that contains a place, and the index among all
   /// nodes of the node at a place. Both functions throw std::invalid_argument for a place outside the rod.
-  /// node_of() also throws it if no node is at the place.
+  /// node_of() also throws std::invalid_argument if no node is at the place.
   [[nodiscard]] std::size_t element_of(const RodPlace& place) const;
   [[nodiscard]] std::size_t node_of(const RodPlace& place) const;
 

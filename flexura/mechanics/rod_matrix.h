@@ -31,8 +31,8 @@ class RodMatrix {
   struct Factors {
     double damping = 0, stiffness = 0;
   };
-  /// Assembles and factors the matrix. Returns false if it is not positive definite. `tensions`: tensions of
-  /// the tendons in channels, N; null: no tendon stiffness.
+  /// Assembles and factors the matrix. Returns false if the matrix is not positive definite. `tensions`:
+  /// tensions of the tendons in channels, N; null: no tendon stiffness.
   [[nodiscard]] bool factor(const RodMotion<double>& motion, const Factors& factors, const double* tensions,
                             bool is_surrounded);
   /// Returns whether all points that have wrenches now also had wrenches when the matrix was factored.

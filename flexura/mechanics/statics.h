@@ -16,8 +16,8 @@ namespace flexura {
 /// Input of a rod's tendons. Each list has one number per tendon, or is empty.
 struct TendonInput {
   std::vector<double> tensions = {};  ///< Tensions at the base, N; >= 0.
-  /// Length of each tendon pulled in at the base, m, from where it is just taut on the undeformed rod. A
-  /// tendon is slack if more of it is let out than the rod takes up.
+  /// Length of each tendon pulled in at the base, m, from the length at which the tendon is just taut on the
+  /// undeformed rod. A tendon is slack if more of it is let out than the rod takes up.
   std::vector<double> displacements = {};
 };
 
@@ -102,9 +102,9 @@ class RodStatics {
   /// converge directly.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads, const Equilibrium& near);
   /// Returns the equilibrium that a rod with the shape of `near` reaches. If the nearby equilibrium is
-  /// stable, it is the result. Otherwise the result is the equilibrium at the end of the descent from `near`.
-  /// Starts from the undeformed rod if `near` did not converge. Returns an unstable equilibrium only if no
-  /// descent from it found a stable one.
+  /// stable, the result is this equilibrium. Otherwise the result is the equilibrium at the end of the
+  /// descent from `near`. Starts from the undeformed rod if `near` did not converge. Returns an unstable
+  /// equilibrium only if no descent from this equilibrium found a stable one.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads,
                                    const Equilibrium& near);
   /// Does the same as settle(), with the undeformed rod as start.

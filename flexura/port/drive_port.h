@@ -19,8 +19,8 @@ enum class DriveQuantity {
 struct DriveReading {
   double time = 0;             ///< Time of the measurement, s.
   std::vector<double> values;  ///< Measured value of each axis, in the drive's quantity.
-  /// Load position of each axis, which includes the backlash, microsteps. Only a drive of motor positions
-  /// that tracks its backlash reports it; otherwise it is empty.
+  /// Load position of each axis, which includes the backlash, microsteps. Empty, unless the drive has motor
+  /// positions and tracks its backlash.
   std::vector<double> carried;
   bool moving = false;  ///< Whether a commanded motion is in progress or pending.
 };

@@ -37,7 +37,7 @@ enum SameAs : unsigned char { same_as_left = 1, same_as_above = 2 };
 /// Work that a block of a row needs, to avoid recomputing known results.
 enum class BlockWork : unsigned char {
   none,  ///< The block is not needed.
-  copy,  ///< All rows that are blurred into the block are equal. One of them is copied.
+  copy,  ///< All rows that are blurred into the block are equal. One of these rows is copied.
   blur,
 };
 

@@ -41,7 +41,7 @@ struct SpanRow {
   float* light = nullptr;
   std::uint8_t* state = nullptr;
   LensRow lens;
-  int* borders = nullptr;        ///< Columns that a contour or a curved edge may divide; draw() adds them.
+  int* borders = nullptr;  ///< Columns that a contour or a curved edge may divide; draw() adds these columns.
   std::size_t border_count = 0;  ///< Number of entries in `borders`.
   bool has_edge = false;         ///< Whether any pixel has state_edge.
   bool has_exact = false;        ///< Whether any pixel is left to the reference path.

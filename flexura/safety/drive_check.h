@@ -41,9 +41,9 @@ struct SteeredSpan {
 /// compensation, or only the rounding, violates a limit.
 ///
 /// In the spans `steered` (increasing, disjoint), a CommandLimiter determines the commands during the run.
-/// The limiter ignores backlash and rounding in speeds and accelerations. Hence the check ignores them in
-/// these spans. A caveat names the axes for which backlash or rounding exceeds a limit. In spans that are not
-/// planned, only positions are checked, because rates are unknown.
+/// The limiter ignores backlash and rounding in speeds and accelerations. Hence the check ignores backlash
+/// and rounding in these spans. A caveat names the axes for which backlash or rounding exceeds a limit. In
+/// spans that are not planned, only positions are checked, because rates are unknown.
 void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmState(double time)>& state_at,
                  std::span<const double> times, const RateBounds& rates, SafetyReport& report,
                  std::span<const SteeredSpan> steered = {});

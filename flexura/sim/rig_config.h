@@ -12,12 +12,12 @@
 
 namespace flexura {
 
-/// A rig as described by the tables of a file. Such a rig is either the model that tasks use, or the truth.
+/// A rig as described by the tables of a file. This rig is either the model that tasks use, or the truth.
 struct RigConfig {
   ArmConfig arm;
   /// Drive of the arm; missing: the sections bend as commanded, within their own rates.
   std::optional<DriveConfig> drive;
-  std::vector<CameraConfig> cameras;  ///< Cameras. Tasks number them in this order.
+  std::vector<CameraConfig> cameras;  ///< Cameras. Tasks number the cameras in this order.
   std::vector<ObstacleConfig> obstacles = {};
 };
 

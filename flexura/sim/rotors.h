@@ -7,7 +7,7 @@
 namespace flexura {
 
 /// `rotor_time`: approximate duration of an overload after which a rotor yields, s. `fall_time`: time in
-/// which a rotor falls back by a turn of its magnetic field, s. Both are half a period of a rotor that
+/// which a rotor falls back by a turn of its magnetic field, s. Both times are half a period of a rotor that
 /// oscillates in its field at about 100 Hz.
 inline constexpr double rotor_time = 5e-3, fall_time = 5e-3;
 

@@ -43,7 +43,7 @@ struct ImageStudy {
   /// A difference is infinite if only one of the two has a value.
   [[nodiscard]] std::array<double, 2> largest_difference() const;
   /// Number of lengths measured in pictures, and the root mean square of their differences from the formulas,
-  /// px. Both are 0 without measurements.
+  /// px. Both numbers are 0 without measurements.
   struct Measured {
     std::size_t count = 0;
     double rms = 0;

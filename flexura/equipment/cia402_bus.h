@@ -28,7 +28,7 @@ struct CanopenNode {
 };
 
 /// The program's side of a CANopen bus, which sends frames and waits for answers with a timeout. Only one
-/// thread may use a Cia402Bus.
+/// thread may use a CanopenBus.
 class CanopenBus {
  public:
   /// The bus waits for each answer for `timeout` s, and sends each request up to `tries` times. Link and

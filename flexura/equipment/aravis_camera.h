@@ -22,8 +22,8 @@ struct AravisConfig {
   std::int64_t packet_size =
       0;  ///< Size of GigE Vision packets, bytes; 0: the largest size that the network supports.
   /// Whether the program reads GigE Vision packets directly from the network interface, if it has the
-  /// permission (CAP_NET_RAW). This needs less computing time. Use false for a camera that is simulated on
-  /// the same computer.
+  /// permission (CAP_NET_RAW). Direct reading needs less computing time. Use false for a camera that is
+  /// simulated on this computer.
   bool packet_socket = true;
   double silence = 5;        ///< Time without a frame after which the program reconnects, s.
   double longest_pause = 5;  ///< Longest pause between two attempts to connect, s.

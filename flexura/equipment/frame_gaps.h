@@ -35,7 +35,7 @@ class NumberGaps {
 
   /// Adds the number of the next frame. Returns the number of frames lost since the previous frame; 0 for the
   /// first frame. If the number is equal to the previous one, or lies behind it in the cyclic range, the
-  /// camera has restarted its count. Then the result is also 0.
+  /// camera has restarted its count, and the result is 0 too.
   std::int64_t lost_before(std::uint64_t number);
   /// Extends the range to 64 bits. Called when a frame number exceeds the range.
   void widen() { end_ = UINT64_MAX; }

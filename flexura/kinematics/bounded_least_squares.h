@@ -59,7 +59,7 @@ struct BoundedDescent {
 
   /// Sets `trial` to x plus the step that minimizes |J step + r|^2 + damping |step|^2 within the bounds.
   /// Variables that would violate a bound are fixed at the bound, and the other variables are solved again.
-  /// This is repeated until no bound is violated.
+  /// Fixing and solving are repeated until no bound is violated.
   void try_step(const Bounds& within, const Eigen::VectorXd& x, double damping);
   /// Computes `r`, `J`, `square` and `gradient` at x.
   void linearise(const Eigen::VectorXd& x);

@@ -80,7 +80,8 @@ struct InverseResult {
   Eigen::Vector3d tip;  ///< p_WT of `state`, m.
   /// Distance of the tip from the target, m; for a curve, the largest distance along the arm.
   double position_error = 0.0;
-  /// Angle between the tip's direction or rotation and that of the target, rad; 0 for targets without either.
+  /// Angle between the direction or rotation of the tip and of the target, rad; 0 for targets without
+  /// direction and rotation.
   double angle_error = 0.0;
   double position_tolerance = 0.0;  ///< Tolerance on position_error, m.
   int iterations = 0;               ///< Number of evaluations of the arm and its Jacobian.

@@ -39,9 +39,10 @@ struct TendonFit {
 };
 
 /// Returns the state for tendon displacements: bends, and stretches of stretchable sections. The fit is exact
-/// if an exactly fitting state exists. Otherwise the fit is a least-squares fit, section by section from the
-/// base. In a continuous channel, this equals the least-squares fit to all tendons. bend_y of planar arms is
-/// 0. If the tendons do not determine a section, the result is the solution nearest to straight.
+/// if an exactly fitting state exists. If no state fits exactly, the result is a least-squares fit, section
+/// by section from the base. In a continuous channel, this equals the least-squares fit to all tendons.
+/// bend_y of planar arms is 0. If the tendons do not determine a section, the result is the solution nearest
+/// to straight.
 [[nodiscard]] TendonFit fit_state(const Arm& arm, const Drive& drive,
                                   const TendonDisplacements& displacements);
 

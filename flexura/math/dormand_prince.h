@@ -33,8 +33,8 @@ class DormandPrince {
   /// Result of an advance.
   struct Progress {
     /// Whether the time `until` was reached. If `until` was not reached, the number of steps reached its
-    /// limit, the step size became too small, or go_on() stopped the advance. Then t and y are those of the
-    /// last accepted step.
+    /// limit, the step size became too small, or go_on() stopped the advance. After such an end, t and y have
+    /// the values of the last accepted step.
     bool is_there = false;
     int steps = 0, taken_back = 0;  ///< Numbers of accepted steps, and of steps rejected for their error.
   };

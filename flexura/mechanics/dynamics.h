@@ -243,8 +243,8 @@ class RodDynamics {
 
   /// Returns the derivatives at a state. The computing time grows with the square of the number of sections.
   /// `slide` as in start(). Tensions of tendons of given displacement are computed from the tendon lengths.
-  /// This is inaccurate for stiff tendons. So for a rod at rest, RodState::tensions are used instead if these
-  /// tensions fit the lengths.
+  /// For stiff tendons, these computed tensions are inaccurate. So for a rod at rest, RodState::tensions are
+  /// used instead if these tensions fit the lengths.
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
                                          const RodLoads& loads, const RodSlide* slide = nullptr);
   /// Returns the linearised motion around a state. Cost, accuracy and exceptions are those of slopes(). Also

@@ -81,8 +81,8 @@ class RodChain {
   /// Returns minus the work of all loads at the last balance, J; it is 0 for loads at the base's origin. The
   /// result is a potential energy if has_energy().
   [[nodiscard]] double load_energy(const RodLoads& loads) const;
-  /// Returns whether r is the gradient of an energy under these loads. This is the case without moments,
-  /// follower loads and friction.
+  /// Returns whether r is the gradient of an energy under these loads. An energy exists if there are no
+  /// moments, follower loads and friction.
   [[nodiscard]] bool has_energy(const RodLoads& loads) const;
 
   /// Factors the derivative of r at the last balance plus `share` times the rod's stiffness. Returns false if

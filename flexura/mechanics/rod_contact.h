@@ -50,7 +50,8 @@ struct ContactForce {
   double depth = 0;         ///< m
   double normal_force = 0;  ///< N
   bool sticks = false;      ///< Whether the slip is at most the law's slip speed.
-  /// Whether the tube's centerline is inside the other body. Then the force may have any direction.
+  /// Whether the tube's centerline is inside the other body. If the centerline is inside, the force may have
+  /// any direction.
   bool is_deep = false;
 };
 

@@ -31,7 +31,7 @@ class RodElement {
   [[nodiscard]] int size() const { return grid_.size; }
   [[nodiscard]] const RodGrid& grid() const { return grid_; }
   [[nodiscard]] double length() const { return length_; }
-  /// Returns whether tendons run straight between disks (as chords). Then the tendon forces depend on the
+  /// Returns whether tendons run straight between disks (as chords). The forces of such tendons depend on the
   /// poses of the disks, not only on strains.
   [[nodiscard]] bool has_chords() const { return !grid_.disks.empty(); }
 

@@ -32,8 +32,8 @@ class RodMotion {
   void place(const S* q, const S* v);
   /// Declares that the slopes of q and v in the next calls of place() are 0 outside the modes of sections
   /// `first` to `last`. `keeps_values`: also declares that values, tensions and loads are those of the last
-  /// calls of place() and pull(), and only slopes differ. Then results that depend only on other sections are
-  /// not recomputed.
+  /// calls of place() and pull(), and only slopes differ. Results that depend only on other sections are then
+  /// reused.
   void vary(std::size_t first, std::size_t last, bool keeps_values) {
     first_varied_ = first, last_varied_ = last, keeps_values_ = keeps_values;
   }

@@ -11,8 +11,8 @@
 
 namespace flexura {
 
-/// Places of a rod between its nodes. The motion of a place is computed exactly, as that of the end of a
-/// partial interval. The places belong to a RodLayout, and are evaluated only if a wrench may act there.
+/// Places of a rod between its nodes. The motion of a place is computed exactly, as the motion of the end of
+/// a partial interval. The places belong to a RodLayout, and are evaluated only if a wrench may act there.
 struct RodPoints {
   struct Point {
     std::size_t section = 0;   ///< Index of the element that contains the place.

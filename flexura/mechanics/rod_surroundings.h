@@ -36,8 +36,9 @@ struct NodePull {
   /// Whether wrench and derivatives are 0.
   bool is_idle = false;
   /// Friction and geometry may cause negative eigenvalues of the symmetric parts of -by_pose and -by_twist.
-  /// Then the matrix of a step may not be positive definite. If `is_held`, this matrix uses the semidefinite
-  /// `stiffness` and `damping` instead. The solution is the same, but needs more iterations.
+  /// With such eigenvalues, the matrix of a step may not be positive definite. If `is_held`, this matrix uses
+  /// the semidefinite `stiffness` and `damping` instead. With `is_held`, the solution of a step is the same,
+  /// but needs more iterations.
   bool is_held = false;
   Matrix6d stiffness = Matrix6d::Zero();
   Matrix6d damping = Matrix6d::Zero();
@@ -85,8 +86,8 @@ class RodSurroundings {
   virtual void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
                     std::span<NodePull> pulls) const = 0;
 
-  /// Returns the places where wrenches may act in addition to those at nodes. A place may be at a node. The
-  /// places are constant.
+  /// Returns the places where wrenches may act in addition to the wrenches at nodes. A place may be at a
+  /// node. The places are constant.
   [[nodiscard]] virtual std::span<const RodPlace> points() const { return {}; }
   /// Appends to `chosen`, in increasing order, the indices of the points to evaluate for these node motions.
   /// `lengths`: upper bounds of the rod's lengths between nodes, m, from base to tip. Other points have no

@@ -47,9 +47,8 @@ struct RigStance {
   std::size_t camera = 0;  ///< Index in RigModel::cameras.
   HeadState head = {};
   StageState stage = {};
-  /// Index of an earlier RigStance of the observations, if the camera has neither panned nor tilted since
-  /// then. Then this stance and the earlier one have equal errors of the head's angles. Zoom and stage may
-  /// have moved.
+  /// Index of an earlier RigStance of the observations, if the camera has neither panned nor tilted since the
+  /// earlier stance. Both stances then have equal errors of the head's angles. Zoom and stage may have moved.
   std::optional<std::size_t> turned_as = {};
 
   /// Returns the axis positions without the camera's index.

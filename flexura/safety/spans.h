@@ -84,11 +84,11 @@ struct FoundSpans {
 ///
 /// The bounds of an interval may prove that the quantity is below the limit or above it; otherwise the
 /// interval is halved. An undecided interval no longer than search.time counts as above the limit if the
-/// quantity is above the limit at its ends or middle. Otherwise the interval is below the limit if its upper
-/// bound exceeds the limit by at most search.value. Hence a missed violation is shorter than half of
-/// search.time and exceeds the limit by at most search.value. The ends of spans are accurate to search.time.
-/// An interval that is too short to halve (`shortest_interval`) counts as above the limit, unless it is
-/// proved to be below.
+/// quantity is above the limit at its ends or middle. Any other undecided interval counts as below the limit
+/// if its upper bound exceeds the limit by at most search.value. Hence a missed violation is shorter than
+/// half of search.time and exceeds the limit by at most search.value. The ends of spans are accurate to
+/// search.time. An interval that is too short to halve (`shortest_interval`) counts as above the limit,
+/// unless it is proved to be below.
 ///
 /// Intervals are processed by decreasing length, and either all or none of the intervals of one length are
 /// evaluated. If the number of intervals reaches its limit, undecided times are therefore sampled evenly.

@@ -19,7 +19,7 @@ struct PredictiveLawConfig {
   int most_iterations = 60;  ///< Largest number of iterations of the quadratic program's solver.
 };
 
-/// A linear limit on all commands u of the horizon: by_command . (u - sent) <= room.
+/// A linear limit on all commands u of the horizon: by_command (u - sent) <= room.
 struct PredictiveLimit {
   Eigen::RowVectorXd by_command;  ///< Derivatives with respect to bend_x, bend_y and stretch of each section.
   /// Distance of the present command `sent` from the limit; negative if `sent` violates the limit.
@@ -63,7 +63,7 @@ class PredictiveLaw {
   [[nodiscard]] ArmState step(const PredictiveState& now, const Eigen::MatrixXd& by_command);
 
   /// Quadratic program of the last step, for comparison with other solvers. The changes x of the rates
-  /// minimise x . H x / 2 + gradient . x. The references are valid until the next step.
+  /// minimise x^T H x / 2 + gradient^T x. The references are valid until the next step.
   struct Problem {
     const Eigen::MatrixXd& H;
     const Eigen::VectorXd& gradient;

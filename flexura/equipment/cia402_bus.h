@@ -55,7 +55,7 @@ class CanopenBus {
   [[nodiscard]] Outcome<SdoTransfer> read(std::size_t i, ObjectAddress object);
   /// Writes an object. An abort by the node is a fault.
   [[nodiscard]] CommandOutcome write(std::size_t i, ObjectAddress object, std::uint32_t value, int size);
-  /// Runs a transfer. An abort by the node is not a fault here.
+  /// Runs a transfer. If the node aborts the transfer, the result is the aborted transfer, not a fault.
   [[nodiscard]] Outcome<SdoTransfer> run(std::size_t i, const SdoTransfer& transfer, ObjectAddress object);
 
   /// Returns a fault that names the node with index `i`.

@@ -37,7 +37,7 @@ class MagnusStep {
   [[nodiscard]] const Vector6d& twist() const { return twist_; }
   /// Returns dT/da.
   [[nodiscard]] Slopes slopes() const;
-  /// Returns, for a wrench W, the second derivative F of W . T with respect to a. In any two directions d and
+  /// Returns, for a wrench W, the second derivative F of W^T T with respect to a. In any two directions d and
   /// e the second derivative is the sum of d_i^T F_ij e_j.
   [[nodiscard]] Form form(const Vector6d& W) const;
 

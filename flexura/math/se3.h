@@ -34,7 +34,7 @@ struct TwistExponential {
   /// Computes the exponential of a twist, with its first derivative.
   explicit TwistExponential(const Vector6d& given);
 
-  /// Returns, for a wrench W in A, the matrix M with W . (d jacobian(t + h a) / dh) b = a^T M b for all
+  /// Returns, for a wrench W in A, the matrix M with W^T (d jacobian(t + h a) / dh) b = a^T M b for all
   /// twists a and b.
   [[nodiscard]] Matrix6d jacobian_form(const Vector6d& W) const;
 

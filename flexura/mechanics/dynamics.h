@@ -41,8 +41,9 @@ struct RodDynamicsConfig {
 /// How a step ended.
 enum class DynamicsEnd {
   converged,
-  bad_input,  ///< The input is invalid: a number is not finite, a tension is below 0, a list has a wrong
-              ///< length, or the step is 0.
+  /// The input is invalid: a number is not finite, a tension is below 0, a list has a wrong length, or the
+  /// step is 0.
+  bad_input,
   did_not_converge,  ///< The step is too long for the loads.
 };
 /// Returns a description for users.

@@ -37,9 +37,9 @@ struct RodDynamics::Work {
     double alpha_f, alpha_m, gamma;
     /// Coefficient of h times the stage's rate, in the change of state from the step's start to the stage.
     double stage;
-    double memory;  ///< Coefficient of h times RodState::rate, in the change of state from the step's start
-                    ///< to the stage.
-    double error;   ///< Step error in units of h^3 x'''.
+    /// Coefficient of h times RodState::rate, in the change of state from the step's start to the stage.
+    double memory;
+    double error;  ///< Step error in units of h^3 x'''.
   };
 
   /// Returns whether all numbers are so small that energies and velocities are finite.

@@ -15,12 +15,12 @@ namespace flexura {
 /// A parameter to estimate. A rod's equations of motion are linear in all parameters except friction.
 struct RodParameter {
   enum class Kind {
-    shear,      ///< Factor on the rod's shear stiffness.
-    stretch,    ///< Factor on the stretch stiffness.
-    bends,      ///< Factor on the bending stiffness in both directions.
-    twist,      ///< Factor on the twist stiffness.
-    stiffness,  ///< Factor on all four stiffnesses. This parameter determines Young's modulus if Poisson's
-                ///< ratio is known.
+    shear,    ///< Factor on the rod's shear stiffness.
+    stretch,  ///< Factor on the stretch stiffness.
+    bends,    ///< Factor on the bending stiffness in both directions.
+    twist,    ///< Factor on the twist stiffness.
+    /// Factor on all four stiffnesses. This parameter determines Young's modulus if Poisson's ratio is known.
+    stiffness,
     /// Damping time, s. The damping is this time times the rod's stiffness, and replaces the rod's own
     /// damping.
     damping,
@@ -28,7 +28,8 @@ struct RodParameter {
     friction,  ///< Friction coefficient of all tendons, or of the tendons that end at the section.
   };
   Kind kind = Kind::bends;
-  std::optional<std::size_t> section = {};  ///< Default: all sections together. Must be omitted for a mass.
+  std::optional<std::size_t> section =
+      {};  ///< Default: all sections together. The section must be omitted for a mass.
 };
 
 /// Measurement of a rod at one time.
@@ -45,8 +46,9 @@ struct RodMotionRecordSample {
 
 /// Recorded motion of a rod.
 struct RodMotionRecord {
-  std::vector<RodMotionRecordSample> samples;  ///< At least 20. If the tensions jump between two samples, the
-                                               ///< jump is assumed to be half-way between these samples.
+  /// At least 20. If the tensions jump between two samples, the jump is assumed to be half-way between these
+  /// samples.
+  std::vector<RodMotionRecordSample> samples;
   RodLoads loads = {};
   /// Standard deviations of the independent errors of each mode and of its rate. If both lists are empty, the
   /// errors are unknown and small.

@@ -58,7 +58,8 @@ class RodElement {
   [[nodiscard]] bool is_coarse() const;
 
   /// Wrap angle of a tendon between its base and the end of an element. `turned`: wrap angle, rad.
-  /// `direction`: its direction in the frame of the element's end. At the base, angle and direction are zero.
+  /// `direction`: direction of the tendon in the frame of the element's end. At the base, angle and direction
+  /// are zero.
   struct Run {
     double turned = 0;
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();

@@ -28,7 +28,7 @@ struct NodeMotion {
 };
 
 /// Wrench [f; m] on a node about the base's origin. `by_pose`: derivative with respect to a small
-/// displacement twist of the node. `by_twist`: derivative with respect to its velocity twist.
+/// displacement twist of the node. `by_twist`: derivative with respect to the node's velocity twist.
 struct NodePull {
   Vector6d wrench = Vector6d::Zero();
   Matrix6d by_pose = Matrix6d::Zero();

@@ -24,16 +24,16 @@ struct TendonInput {
 /// How a search for an equilibrium ended.
 enum class StaticsEnd {
   converged,
-  bad_input,  ///< The input is invalid: a number is not finite, a tension is below 0, or a list has a wrong
-              ///< length.
+  /// The input is invalid: a number is not finite, a tension is below 0, or a list has a wrong length.
+  bad_input,
   /// No equilibrium: the load path diverged before full load, or the rod would be compressed to a negative
   /// length.
   no_equilibrium,
   /// The tendons pull two guide disks together. The rod buckles between the disks, and only their contact,
   /// which is not modelled, could hold it.
   disks_meet,
-  out_of_steps,  ///< Within the limit on the number of steps, neither an equilibrium nor the end of the load
-                 ///< path was found.
+  /// Within the limit on the number of steps, neither an equilibrium nor the end of the load path was found.
+  out_of_steps,
 };
 /// Returns a description for users.
 [[nodiscard]] const char* words(StaticsEnd end);

@@ -59,8 +59,8 @@ struct SpanEdge {
 struct SpanPiece {
   float u0, v0, depth0;
   Linear point[3], direction[3];
-  Linear way;  ///< Depth from depth0 to approximately the plane that contains the piece's axis and faces the
-               ///< camera, m.
+  /// Depth from depth0 to approximately the plane that contains the piece's axis and faces the camera, m.
+  Linear way;
   /// Curvature, 1/m; radius at the piece's start, m; change of the radius per arc length.
   float curvature, radius, widening;
   float widest;  ///< Largest radius, m.

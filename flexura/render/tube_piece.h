@@ -33,9 +33,9 @@ struct TubePiece {
   int body = 0;
   /// Center of a ball that contains the piece, in P, m.
   Eigen::Vector3d bound_center = Eigen::Vector3d::Zero();
-  double bound_radius = 0;   ///< Radius of the ball, m.
-  double near_radius = 0;    ///< Radius of a ball with the same center that also contains everything near the
-                             ///< piece in the image, m.
+  double bound_radius = 0;  ///< Radius of the ball, m.
+  /// Radius of a ball with the same center that also contains everything near the piece in the image, m.
+  double near_radius = 0;
   std::size_t tube_arc = 0;  ///< Arc of the tube from which the piece was cut.
   double start_in_arc = 0;   ///< Distance of the piece's start from this arc's start, m.
 

@@ -33,7 +33,7 @@ struct Violation {
   double start = 0;       ///< Start of the span, s.
   double end = 0;         ///< End of the span, s.
   double worst_time = 0;  ///< Time of `value`, s.
-  /// Index of the section, 0 at the base; for a motor, that of its tendon's section.
+  /// Index of the section, 0 at the base; for a motor, the index of its tendon's section.
   std::optional<std::size_t> section = {};
   /// Index of the section that `section` touches; 0 at the base.
   std::optional<std::size_t> other_section = {};

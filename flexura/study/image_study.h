@@ -32,8 +32,9 @@ struct ImageStudy {
   std::vector<double> values;  ///< Values of the parameter, in base units.
   std::vector<TargetImage>
       images;  ///< Image of the target for each value, computed by the projection formulas.
-  std::vector<StudyColumn> columns;  ///< Features from the projection formulas, from the renderer's geometry,
-                                     ///< and optionally measured in pictures.
+  /// Features from the projection formulas, from the renderer's geometry, and optionally measured in
+  /// pictures.
+  std::vector<StudyColumn> columns;
 
   /// Returns whether the whole target is inside the image for the value i.
   [[nodiscard]] bool in_image(std::size_t i) const;

@@ -83,7 +83,7 @@ class CommandLimiter {
   /// Stores the last observation, for the record of a fault.
   void observe(const ArmState& observed) { observed_ = observed; }
   /// Stops the arm because of a fault, such as an error of a port or a lost estimate. If several faults
-  /// occur, keeps the first.
+  /// occur, the limiter keeps the first fault.
   void fault(const std::string& reason);
   /// Returns the record of a fault that occurs now because of `reason`.
   [[nodiscard]] LimiterFault record(std::string reason) const {

@@ -16,7 +16,7 @@ namespace flexura {
 struct TipTarget {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< p_WT, m.
   std::optional<Eigen::Vector3d> direction = {};       ///< Direction of the tip's z axis; any length above 0.
-  std::optional<Eigen::Matrix3d> rotation = {};        ///< R_WT; not together with `direction`.
+  std::optional<Eigen::Matrix3d> rotation = {};  ///< Rotation R_WT of the tip; not together with `direction`.
 };
 
 /// Target curve of the whole backbone: a polyline. The point at a fraction f of the backbone's length

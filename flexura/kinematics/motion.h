@@ -17,7 +17,8 @@ struct SectionRates {
   double stretch = 0;  ///< Bound on |d stretch/dt|, 1/s.
 };
 
-/// A motion: the arm's state as a function of time within one task. Immutable, so that threads can share it.
+/// A motion: the arm's state as a function of time within one task. A motion is immutable, so that threads
+/// can share it.
 class Motion {
  public:
   virtual ~Motion() = default;
@@ -64,7 +65,7 @@ enum class Interpolation { linear, smooth };
                                         Interpolation interpolation);
 
 /// Returns a motion that is given by a function of time, such as a user's expression, from time 0 to
-/// `duration`, s. The bounds on its rates are unknown.
+/// `duration`, s. The bounds on the rates of this motion are unknown.
 [[nodiscard]] MotionPtr function_motion(double duration, std::function<ArmState(double time)> state_at);
 
 }  // namespace flexura

@@ -19,8 +19,9 @@ namespace flexura {
 /// Settings of the time integration.
 struct RodDynamicsConfig {
   /// Factor by which one step reduces motion that is much faster than the step, from 0 to 1. With 1 there is
-  /// no numerical damping: the step is the implicit midpoint rule. Values near 1 are more accurate. But if
-  /// the steps are longer than the periods of an undamped rod, its energy may grow for values much above 0.1.
+  /// no numerical damping: the step is the implicit midpoint rule. Steps with values near 1 are more
+  /// accurate. But if the steps are longer than the periods of an undamped rod, its energy may grow for
+  /// values much above 0.1.
   double spectral_radius = 0.1;
   /// Tolerance of the equations of a step, rad/s. The energy of the remaining errors of the rates is at most
   /// the energy of the whole rod rotating at this rate.
@@ -88,7 +89,8 @@ struct RodStep {
   int pieces = 1;  ///< Number of pieces that the step was divided into; 0: the step did not converge.
   /// Whether the first attempt failed to converge (RodDynamicsConfig::most_pieces).
   bool is_anew = false;
-  /// Work done against tendon friction, J. Includes energy stored elastically before sliding.
+  /// Work done against tendon friction, J. The work includes energy that is stored elastically before
+  /// sliding.
   double friction_work = 0;
   double friction_loss = 0;  ///< Dissipated part of friction_work, never below 0, J.
 

@@ -36,7 +36,7 @@ struct RodParameter {
 struct RodMotionRecordSample {
   double time = 0;    ///< Time, s; later than in the previous sample.
   Eigen::VectorXd q;  ///< Strain modes, as in RodChain.
-  /// dq/dt, in all samples or in none. Missing: computed from differences of q.
+  /// dq/dt, in all samples or in none. If missing, the rates are computed from differences of q.
   std::optional<Eigen::VectorXd> v = {};
   std::vector<double> tensions = {};  ///< Tensions, N, one per tendon, each >= 0; empty: zero.
   /// Covariance of the errors of q, modes x modes, in all samples or in none; replaces
@@ -81,13 +81,14 @@ struct Identification {
 
 /// Estimates the parameters that fit a record best, by linear least squares of the equations of motion. Each
 /// equation of a mode is multiplied by a smooth bump in time and integrated by parts over a window (weak
-/// form: Shinbrot 1957). So no acceleration is needed. With known noise the equations are weighted by their
-/// covariance, propagated from the record to first order. Noise of q and v in the equations' coefficients
-/// causes a bias, which is removed. With friction, the equations are linearised repeatedly at the last
-/// estimate until the estimate converges (Gauss-Newton method). The iteration starts from the rod's friction
-/// coefficients and, if necessary, from others. If the friction is observable from none of these starts, the
-/// result has the rod's value. Throws std::invalid_argument for an invalid rod, no parameters, overlapping
-/// parameters, or samples that do not fit the rod. `progress`, if any, follows the iterations.
+/// form: Shinbrot 1957). So the equations contain no accelerations. With known noise the equations are
+/// weighted by their covariance, propagated from the record to first order. Noise of q and v in the
+/// equations' coefficients causes a bias, which is removed. With friction, the equations are linearised
+/// repeatedly at the last estimate until the estimate converges (Gauss-Newton method). The iteration starts
+/// from the rod's friction coefficients and, if necessary, from others. If the friction is observable from
+/// none of these starts, the result has the rod's value. Throws std::invalid_argument for an invalid rod, no
+/// parameters, overlapping parameters, or samples that do not fit the rod. `progress`, if any, follows the
+/// iterations.
 [[nodiscard]] Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
                                       const RodMotionRecord& record, const IdentificationConfig& config = {},
                                       Progress* progress = nullptr);

@@ -124,7 +124,7 @@ struct EndLoad {
 
 /// A spring that pulls a point of a rod's centerline to a place. The spring force is k d / sqrt(1 + (k |d| /
 /// most)^2), with the vector d from the point to the place. It never exceeds `most`. A constant force is
-/// added.
+/// added to this spring force.
 struct PointSpring {
   std::size_t section = 0;
   double at = 1;                                    ///< Position as part of the section's length, in [0, 1].
@@ -140,14 +140,15 @@ struct RodLoads {
   Eigen::Vector3d per_length =
       Eigen::Vector3d::Zero();  ///< Force along the whole rod, N per metre of undeformed length.
   std::vector<EndLoad> ends = {};
-  /// Springs, each at a place that is a node of the rod. Used in statics only; dynamics uses RodSpring.
+  /// Springs, each at a place that is a node of the rod. These springs act in statics only; dynamics uses
+  /// RodSpring.
   std::vector<PointSpring> springs = {};
 };
 
 /// A rod clamped at its base. All quantities are in the frame of the base. The rod starts at the origin,
 /// along z.
 struct Rod {
-  std::vector<RodSection> sections;  ///< Base first; at least one.
+  std::vector<RodSection> sections;  ///< Sections from the base on; at least one.
   std::vector<TendonRoute> tendons;
 
   /// Returns the undeformed length, m.

@@ -80,8 +80,8 @@ class RodElement {
   void rub_change(std::size_t tendon, double friction, double tension, const Eigen::VectorXd& dq, Run& run,
                   RunChange& change, Eigen::Ref<Eigen::VectorXd> residual_change) const;
   /// Computes residual, tangent, tendon lengths and their derivatives from internal and tendon forces.
-  /// `tension`: tension of each tendon of the rod at its base, N. Sections with chords require the columns.
-  /// The tangent does not include the change of friction with the turning angle.
+  /// `tension`: tension of each tendon of the rod at its base, N. Sections with chords require computed
+  /// columns. The tangent does not include the change of friction with the turning angle.
   void stress(std::span<const double> tension);
   /// Adds `share` times the loads. `beyond`: wrench of all loads on distal sections. Requires the columns.
   void load(const RodLoads& loads, double share, const Vector6d& beyond);

@@ -81,8 +81,8 @@ class RodSurroundings {
   virtual ~RodSurroundings() = default;
   /// Computes wrenches at all nodes, from the base on. The last node of a section and the first node of the
   /// next section are at the same place, but are separate nodes. `run`: length of rod that each node
-  /// represents in an integral along the rod, m. Must set all elements of `pulls`. If steps must not allocate
-  /// memory, this function must not either.
+  /// represents in an integral along the rod, m. The function must set all elements of `pulls`. If steps must
+  /// not allocate memory, this function must not either.
   virtual void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
                     std::span<NodePull> pulls) const = 0;
 
@@ -90,11 +90,11 @@ class RodSurroundings {
   /// node. The places are constant.
   [[nodiscard]] virtual std::span<const RodPlace> points() const { return {}; }
   /// Appends to `chosen`, in increasing order, the indices of the points to evaluate for these node motions.
-  /// `lengths`: upper bounds of the rod's lengths between nodes, m, from base to tip. Other points have no
-  /// wrench.
+  /// `lengths`: upper bounds of the rod's lengths between nodes, m, from base to tip. Points that are not
+  /// chosen have no wrench.
   virtual void choose(std::span<const NodeMotion> /*nodes*/, std::span<const double> /*lengths*/,
                       std::vector<std::size_t>& /*chosen*/) const {}
-  /// Computes wrenches at the chosen points. Must set all elements of `pulls`.
+  /// Computes wrenches at the chosen points. The function must set all elements of `pulls`.
   virtual void pull_points(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                            std::span<NodePull> /*pulls*/) const {}
   /// If wrenches at several points are coupled, appends all derivatives of these wrenches, including those

@@ -23,8 +23,8 @@ struct LimiterConfig {
   double step = 1.0 / 30;  ///< Time between commands, s; > 0.
   std::optional<Drive> drive =
       {};  ///< Drive of the arm: limits of its motors' speed, step rate, acceleration and position.
-  /// Time between the rows of the command list that the motors follow, s; 0: `step`. Motor rates change
-  /// within this time.
+  /// Time between the rows of the command list that the motors follow, s; 0: `step`. The rates of the motors
+  /// change within this time.
   double list_step = 0;
   std::vector<Obstacle> obstacles =
       {};  ///< Obstacles that the arm must not touch; checked only with looks_ahead.

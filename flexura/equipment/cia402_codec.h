@@ -118,7 +118,7 @@ enum class DriveState {
 /// Returns the bits of a statusword that show a state.
 [[nodiscard]] std::uint16_t statusword_of(DriveState state);
 
-/// Bits of a statusword beyond the state.
+/// Bits of a statusword that do not belong to the state.
 namespace status_bit {
 inline constexpr std::uint16_t target_reached = 1U << 10, limit_active = 1U << 11,
                                /// Setpoint acknowledged; in homing mode: homing attained.

@@ -7,7 +7,7 @@ namespace flexura {
 /// Motion of an axis with trapezoidal speed, as a function of time. The caller chooses the unit of positions.
 class Cia402Ramp {
  public:
-  /// Starts at rest at a position.
+  /// Makes an axis at rest at a position.
   explicit Cia402Ramp(double position = 0) : target_(position) {}
 
   /// Sets position and velocity at `now`, s; the axis then keeps its velocity.

@@ -47,7 +47,8 @@ class GrblDrive : public DrivePort {
   GrblDrive(std::unique_ptr<Link> link, const ClockPort& clock, GrblConfig config);
 
   /// Resets the controller, which also stops its motors, and reads its settings. Fails if the controller does
-  /// not answer, or if a setting is wrong (docs/equipment/grbl.md). Afterwards the positions are unknown.
+  /// not answer, or if a setting is wrong (docs/equipment/grbl.md). After the reset, the positions are
+  /// unknown.
   [[nodiscard]] CommandOutcome connect();
   /// Moves all axes to their limit switches. `positions`: motor positions at the switches, microsteps.
   [[nodiscard]] CommandOutcome home(std::span<const double> positions);

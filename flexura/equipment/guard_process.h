@@ -89,7 +89,7 @@ class GuardWatch {
 };
 
 /// Sends `size` bytes over a link immediately. First discards bytes that a serial line has not sent yet,
-/// because a stop must not wait for commands. Gives up after a short time. Async-signal-safe.
+/// because a stop must not wait for commands. The function gives up after a short time. Async-signal-safe.
 void send_stop(int descriptor, const char* bytes, std::size_t size) noexcept;
 
 /// Main loop of the guarding process. Protects devices until the program sends the message `end` over

@@ -39,8 +39,9 @@ class DrivePort {
   [[nodiscard]] virtual DriveQuantity quantity() const = 0;
   [[nodiscard]] virtual std::size_t axes() const = 0;
   /// Moves each axis to its target. All axes arrive at the same time after `duration`, s. An axis that needs
-  /// longer arrives as soon as possible. Duration 0 means as soon as possible. The command is refused if the
-  /// number of targets is wrong, a target is not finite, or the duration is negative or not finite.
+  /// longer arrives as soon as possible. With duration 0, the axes arrive as soon as possible. The command is
+  /// refused if the number of targets is wrong, a target is not finite, or the duration is negative or not
+  /// finite.
   [[nodiscard]] virtual CommandOutcome command(std::span<const double> targets, double duration) = 0;
   /// Stops all axes as fast as possible.
   [[nodiscard]] virtual CommandOutcome halt() = 0;

@@ -17,7 +17,7 @@
 
 namespace flexura {
 
-/// A simulated stepper controller on a pseudoterminal: Grbl for three axes, otherwise grblHAL.
+/// A simulated stepper controller on a pseudoterminal, with Grbl for three axes, otherwise with grblHAL.
 class RehearsedController {
  public:
   /// The controller has the speed and acceleration limits of the motors of `axes`, which are at most 8.

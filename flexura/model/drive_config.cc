@@ -184,12 +184,11 @@ const Table<TendonConfig>& fields_of(const TendonConfig*) {
 const Table<DriveConfig>& fields_of(const DriveConfig*) {
   static const auto table =
       Table<DriveConfig>("drive", "Tendon drive of the arm: spools turned by stepper motors.")
-          .field(
-              "radius", &DriveConfig::radius,
-              {.meaning =
-                   "Distance of the tendons from the backbone. A `radius` of a single tendon overrides it.",
-               .unit = Unit::metre,
-               .range = above_up_to(0, 1e3)})
+          .field("radius", &DriveConfig::radius,
+                 {.meaning = "Distance of the tendons from the backbone. A `radius` of a single tendon "
+                             "overrides this distance.",
+                  .unit = Unit::metre,
+                  .range = above_up_to(0, 1e3)})
           .field("disks", &DriveConfig::disks,
                  {.meaning = "Number of equal pieces into which guide disks divide each section. Tendons are "
                              "straight between disks.",

@@ -11,8 +11,8 @@
 
 namespace flexura {
 
-/// Transport of the pictures of an RTSP stream. tcp: within the RTSP connection; no packets are lost, but a
-/// slow network causes delays. udp: in separate packets, which may be lost.
+/// Transport of the pictures of an RTSP stream. `tcp`: within the RTSP connection; no packets are lost, but a
+/// slow network causes delays. `udp`: in separate packets, which may be lost.
 enum class StreamTransport { tcp, udp };
 
 /// Source of a camera's pictures: a GStreamer pipeline.

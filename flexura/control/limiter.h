@@ -71,7 +71,7 @@ class CommandLimiter {
 
   /// Returns the command for the next step: the allowed command that is nearest to `asked`. Distance is the
   /// Euclidean norm over bends (rad) and stretches. Limits are linearised about the present command. If the
-  /// linearisation is too inexact, the command is between the braking command and the nearest one.
+  /// linearisation is too inexact, the command is between the braking command and the nearest command.
   [[nodiscard]] LimitedCommand next(const ArmState& asked);
   /// Returns a shorter step towards the law's command, so that every motor can brake to its target at half
   /// its largest acceleration. This function is meant for laws that reduce the error in each step by the

@@ -28,8 +28,8 @@ struct PlaneError {
 /// turn count as different.
 [[nodiscard]] bool planes_determine(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired);
 
-/// Returns true if the direction is towards +Y in one projection and towards -Y in the other one. Noise can
-/// cause such contradictions.
+/// Returns true if the direction is towards +Y in one projection and towards -Y in the other projection.
+/// Noise can cause such contradictions.
 [[nodiscard]] bool planes_contradict(const PlaneView& seen);
 
 /// Returns the errors of the angles from the plane errors e_1 = alpha_1 - alpha_1d and e_2 = alpha_2 -

@@ -12,7 +12,7 @@ namespace flexura {
 /// How an artificial potential handles the arm's elasticity.
 enum class ElasticityRule : std::uint8_t {
   cancelled,  ///< The law adds dV_e/dx.
-  shaped,     ///< V_e is part of the potential. A linear term makes its gradient at the target zero.
+  shaped,  ///< V_e is part of the potential. A linear term makes the potential's gradient at the target zero.
   /// The law neglects V_e. This violates a condition of the theory, unless the target has no bend and no
   /// stretch: then the elastic forces vanish at the target, and `ignored` counts as `shaped`.
   ignored,

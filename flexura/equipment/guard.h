@@ -18,7 +18,7 @@ namespace flexura {
 struct StopMessages {
   std::vector<std::string> first;  ///< First messages; each is sent by a separate write.
   double delay = 0;                ///< Delay after the first messages, s.
-  std::vector<std::string> then;   ///< Messages that are sent `delay` s after the first ones.
+  std::vector<std::string> then;   ///< Messages that are sent `delay` s after the first messages.
 };
 
 struct GuardMessage;

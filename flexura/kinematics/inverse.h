@@ -91,7 +91,7 @@ struct InverseResult {
 };
 
 /// Returns a state of `arm` within its limits that reaches the target. If the target is proven to be out of
-/// reach, the outcome is not_reachable, and the state is the nearest one found. If the target's position is
+/// reach, the outcome is not_reachable, and the state is the nearest state found. If the target's position is
 /// out of reach, this state is nearest in position. Throws std::invalid_argument if a target or start is not
 /// finite, or a tolerance is not positive. Also throws std::invalid_argument if the start does not have one
 /// bend and one stretch per section. Further reasons for this exception are a zero direction, both a

@@ -74,7 +74,7 @@ struct RodState {
   std::shared_ptr<const RodStepFactor> factor = {};
 };
 
-/// Earlier state of tendon friction, from which the present one is computed.
+/// Earlier state of tendon friction, from which the present state is computed.
 struct RodSlide {
   std::vector<double> friction = {};  ///< Friction forces in the earlier state, as in RodState.
   /// Time since the earlier state, s. In this time tendons are assumed to slide at their present rate.
@@ -170,10 +170,10 @@ class RodDynamics {
   void set_surroundings(const RodSurroundings* surroundings);
 
   /// From now on multiplies each section's undeformed length by a factor > 0 that changes at a rate, 1/s
-  /// (RodChain::stretch_rest). The lists of factors and rates have one number per section. For a step the
-  /// factors must be those at the time for which the tendons are given (see step()). The state does not
-  /// change. Kinetic energy and momentum include the driven motion. Throws std::invalid_argument for lists of
-  /// wrong length, factors that are not positive, or rates that are not finite.
+  /// (RodChain::stretch_rest). The lists of factors and rates have one number per section. For a step, the
+  /// factors must have their values at the time for which the tendons are given (see step()). The state does
+  /// not change. Kinetic energy and momentum include the driven motion. Throws std::invalid_argument for
+  /// lists of wrong length, factors that are not positive, or rates that are not finite.
   void stretch_rest(std::span<const double> factors, std::span<const double> rates);
 
   /// Returns the unloaded rod at rest.

@@ -68,7 +68,7 @@ class RodContact final : public RodSurroundings {
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
             std::span<NodePull> pulls) const override;
   [[nodiscard]] std::span<const RodPlace> points() const override { return places_; }
-  /// Chooses the points that may touch a body. This function and the following ones are not thread-safe.
+  /// Chooses the points that may touch a body. This function and the following functions are not thread-safe.
   void choose(std::span<const NodeMotion> nodes, std::span<const double> lengths,
               std::vector<std::size_t>& chosen) const override;
   void pull_points(std::span<const std::size_t> chosen, std::span<const NodeMotion> points,

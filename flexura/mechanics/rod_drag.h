@@ -16,7 +16,7 @@ namespace flexura {
 ///     across: density diameter across_coefficient |u| u / 2 + linear_across u
 ///     along:  pi density diameter along_coefficient |w| w / 2 + linear_along w
 struct RodDragConfig {
-  /// Density of the fluid, kg/m^3. This number and the following ones, up to `linear_along`, are >= 0.
+  /// Density of the fluid, kg/m^3. This number and the following numbers, up to `linear_along`, are >= 0.
   double density = 1000;
   double across_coefficient = 1;    ///< Coefficient of form drag; about 1 for a cylinder.
   double along_coefficient = 0.01;  ///< Coefficient of skin friction.

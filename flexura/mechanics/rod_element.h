@@ -35,7 +35,7 @@ class RodElement {
   /// poses of the disks, not only on strains.
   [[nodiscard]] bool has_chords() const { return !grid_.disks.empty(); }
 
-  /// Sets the section's undeformed length to this factor times the original one.
+  /// Sets the section's undeformed length to this factor times the original length.
   void stretch_rest(double factor) { grid_.stretch_rest(factor); }
   /// Sets the mode values, `size()`.
   void set_modes(const Eigen::Ref<const Eigen::VectorXd>& q);

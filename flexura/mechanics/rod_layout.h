@@ -51,7 +51,7 @@ struct RodLayout {
     std::size_t section = 0;
     std::size_t at = 0;  ///< Node of the section, or number of the chord between its disks.
     double run = 0;      ///< Length of rod that the piece represents, m.
-    /// Length of rod between the middles of this piece and the previous one, m; 0 for the first piece.
+    /// Length of rod between the middles of this piece and of the previous piece, m; 0 for the first piece.
     double held = 0;
   };
   /// A tendon with friction.

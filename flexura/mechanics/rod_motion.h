@@ -40,7 +40,7 @@ class RodMotion {
   /// If true, pull() reuses the last wrenches of the surroundings. Shape and rates must not have changed, but
   /// slopes may.
   void keep_surroundings(bool keeps) { keeps_surroundings_ = keeps; }
-  /// Sets the earlier friction state. `before`: friction force between each piece and the previous one, N,
+  /// Sets the earlier friction state. `before`: friction force between each piece and the previous piece, N,
   /// for all pieces (RodLayout::pieces), by reference. Null: no friction. `time`: time since the earlier
   /// state, s, in which tendons are assumed to have slid at the present rate.
   void hold(const double* before, double time) {

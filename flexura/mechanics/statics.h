@@ -104,7 +104,7 @@ class RodStatics {
   /// Returns the equilibrium that a rod with the shape of `near` reaches. If the nearby equilibrium is
   /// stable, the result is this equilibrium. Otherwise the result is the equilibrium at the end of the
   /// descent from `near`. Starts from the undeformed rod if `near` did not converge. Returns an unstable
-  /// equilibrium only if no descent from this equilibrium found a stable one.
+  /// equilibrium only if no descent from there found a stable equilibrium.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads,
                                    const Equilibrium& near);
   /// Does the same as settle(), with the undeformed rod as start.

@@ -45,7 +45,7 @@ struct BackboneSample {
   /// Arc length from the base along the arm at rest, m; strictly increasing over the samples.
   double s_rest = 0;
   double radius = 0.02;     ///< Radius of the tube, m; > 0.
-  std::size_t section = 0;  ///< Index of the arm's section between this sample and the next one.
+  std::size_t section = 0;  ///< Index of the arm's section between this sample and the next sample.
 };
 
 /// The arm's centreline in the world: a chain of circular arcs, each tangent to the previous arc. The chain

@@ -28,7 +28,7 @@ struct SensorRows {
       conditioned;  ///< Rows after clamping and vignetting: as many as the PSF combines, plus one.
   std::vector<std::uint8_t> same;  ///< SameAs flags of the blocks in the rows of `conditioned`.
   std::vector<std::uint8_t>
-      /// For each block, the number of successive rows, up to the last one, that equal the previous row.
+      /// For each block, the number of successive rows, up to the last row, that equal their previous row.
       age;
   /// State of each block of the current row.
   std::vector<std::uint8_t> is_plain, is_even, is_known, is_needed;

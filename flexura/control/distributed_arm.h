@@ -34,8 +34,8 @@ struct DistributedArmModel {
 
 /// Equations of motion of a distributed arm. The arm is discretised along s before Lagrange's equations are
 /// derived, so that energies and forces are exactly consistent (docs/control.md, "The distributed arm"). The
-/// coordinates x are those of theta (rad), then those of q (rad), then u_i (m) of variable lengths (see
-/// AngleShapes). The magnitude of q must remain below pi/2, where the angles are singular. After
+/// coordinates x are first the coordinates of theta (rad), then those of q (rad), then u_i (m) of variable
+/// lengths (see AngleShapes). The magnitude of q must remain below pi/2, where the angles are singular. After
 /// construction, only functions that return vectors or matrices by value allocate memory.
 class DistributedArm {
  public:

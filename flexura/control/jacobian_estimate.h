@@ -38,7 +38,7 @@ class RecursiveEstimate {
                              double least = 1e-6);
 
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return J_; }
-  /// Learns from a motion. Arguments, result and errors are those of BroydenEstimate::learn.
+  /// Learns from a motion. Arguments, result and exceptions are as for BroydenEstimate::learn.
   bool learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& df);
 
  private:

@@ -18,7 +18,7 @@ namespace flexura {
 /// compensation of gravity and elasticity use the last measured shape and stay constant until the next
 /// measurement. With two image planes, the potential's force uses the plane errors (eq. 14). The damping
 /// always uses the arm's true rates, because the drives themselves produce the damping. With few drives, the
-/// force on the arm is the one nearest to the law's force that the drives can produce.
+/// force on the arm is the producible force that is nearest to the law's force.
 class PotentialRun {
  public:
   /// `start`: coordinates of the arm at the start, where it is at rest. `drives`: the matrix G

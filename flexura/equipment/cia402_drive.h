@@ -31,7 +31,7 @@ struct Cia402Identity {
 /// called from several threads. halt() interrupts the other functions.
 class Cia402Drive : public DrivePort {
  public:
-  /// Link and clock must outlive this object. Times of readings are those of the clock. Throws
+  /// Link and clock must outlive this object. Times of readings are on this clock. Throws
   /// std::invalid_argument if the configuration cannot be used.
   Cia402Drive(Link& link, const ClockPort& clock, const Cia402Config& config);
 

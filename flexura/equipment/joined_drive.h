@@ -9,8 +9,8 @@
 
 namespace flexura {
 
-/// Several drives, the parts, that together form one drive. The axes of the first part come first, then those
-/// of the second part, and so on.
+/// Several drives, the parts, that together form one drive. The axes of the first part come first, then the
+/// axes of the second part, and so on.
 class JoinedDrive : public DrivePort {
  public:
   /// Order in which the functions of the parts are called.

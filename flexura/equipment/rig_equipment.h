@@ -36,7 +36,7 @@ enum class StartPositions {
   /// The axes move to their limit switches, whose positions are known, and then slowly to the initial shape.
   homed,
   /// As `homed`, but tendons that are tighter than in the initial shape are let out first. Finally all
-  /// tendons are pulled in together, which takes up their backlash.
+  /// tendons are pulled in together, which removes their backlash.
   pretensioned,
 };
 

@@ -55,8 +55,8 @@ using MotionPtr = std::shared_ptr<const Motion>;
                                     std::vector<double> phases, double period, double duration);
 
 /// Interpolation between keyframes. `linear`: straight lines. `smooth`: cubic Hermite pieces. At an inner
-/// keyframe, the slope is that of the parabola through the keyframe and its two neighbours. At both ends, the
-/// slope is zero.
+/// keyframe, the slope is the slope of the parabola through the keyframe and its two neighbours. At both
+/// ends, the slope is zero.
 enum class Interpolation { linear, smooth };
 
 /// Returns a motion through `states` at `times`, s. Throws std::invalid_argument unless there are at least

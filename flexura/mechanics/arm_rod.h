@@ -45,8 +45,8 @@ namespace flexura {
 inline constexpr std::size_t arcs_of_rod_section = 3;
 
 /// Returns the model of an arm and its drive that tasks use. In this model, a section consists of one or
-/// several arcs (Section::bend_profile). If the arm's model is static or dynamic, shapes are those of the
-/// rod's equilibrium under commands (RodResponse). Throws as RodResponse.
+/// several arcs (Section::bend_profile). If the arm's model is static or dynamic, the shape for a command is
+/// the shape of the rod's equilibrium (RodResponse). Throws as RodResponse.
 [[nodiscard]] ArmModel arm_model_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
 }  // namespace flexura

@@ -49,8 +49,8 @@ struct RodDynamics::Work {
   void set_surroundings(const RodSurroundings* given);
   [[nodiscard]] std::string input_problem(const TendonInput& tendons, const RodLoads& loads) const;
   [[nodiscard]] bool rubs() const { return !layout.rubbing.empty(); }
-  /// Computes momentum, forces, tensions and friction of a state with rates v. The initial friction is the
-  /// one set by hold().
+  /// Computes momentum, forces, tensions and friction of a state with rates v. hold() sets the initial
+  /// friction.
   void set_forces(RodState& state, const Eigen::VectorXd& v, const TendonInput& tendons,
                   const RodLoads& loads);
   /// Sets the friction state of the motion and its derivatives (RodMotion::hold).
@@ -99,7 +99,7 @@ struct RodDynamics::Work {
   /// those in `tendons`.
   [[nodiscard]] RodDynamicsSlopes slopes_at(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                             const TendonInput& tendons, const RodLoads& loads);
-  /// Solves the stage of a step that starts at `state`; q and v become those of the stage.
+  /// Solves the stage of a step that starts at `state`; q and v become the modes and rates of the stage.
   [[nodiscard]] bool find_stage(const RodState& state, const TendonInput& tendons, const RodLoads& loads,
                                 double h, Eigen::VectorXd& q, Eigen::VectorXd& v);
 

@@ -24,7 +24,7 @@ struct StrainModes {
   int bend = 5;  ///< Number of polynomials for each of the two bending directions.
   int twist = 4;
   /// Whether, in a section with guide disks, each piece between two disks has separate modes (rod_parts.h).
-  /// If false, the modes are those of the whole section, which is inaccurate for strongly bent pieces.
+  /// If false, modes extend over the whole section, which is inaccurate for strongly bent pieces.
   bool by_piece = true;
 
   /// The rod moves only in its xz plane: the rod bends about y, without twist or shear along y.
@@ -115,7 +115,7 @@ struct TendonRoute {
 /// A force and a moment at the end of a section.
 struct EndLoad {
   std::size_t section = 0;
-  /// N, in the base's frame; if `following`, in that of the section's end.
+  /// N, in the base's frame; if `following`, in the frame of the section's end.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< Moment, N m, in the same frame as the force.
   /// Whether force and moment turn with the section's end.

@@ -23,7 +23,7 @@ struct RodContactConfig {
   ContactLaw law = {};
   std::vector<ObstacleConfig> obstacles = {};
   Pose X_WB = {};  ///< Pose of the rod's base in the obstacles' frame.
-  /// Radii of the tube around each section, at the section's base and end, m; empty: those of the elastic
+  /// Radii of the tube around each section, at the section's base and end, m; empty: the radii of the elastic
   /// rod.
   std::vector<std::array<double, 2>> radii = {};
   /// Enables self-contact. Self-contact acts between places whose distance along the rod exceeds
@@ -163,7 +163,7 @@ class RodContact final : public RodSurroundings {
 
 /// Returns places along a rod, section ends included, at distances of at most `spacing` m. At this spacing,
 /// obstacles of the size `spacing` are detected. Throws std::invalid_argument for a spacing that is not
-/// positive, or that makes more than 10,000 places.
+/// positive, or that results in more than 10,000 places.
 [[nodiscard]] std::vector<RodPlace> contact_places(const Rod& rod, double spacing);
 
 }  // namespace flexura

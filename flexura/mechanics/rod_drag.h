@@ -23,7 +23,7 @@ struct RodDragConfig {
   double linear_across = 0;         ///< Linear drag across the rod, N s/m per metre of rod.
   double linear_along = 0;
   Eigen::Vector3d flow = Eigen::Vector3d::Zero();  ///< Velocity of the fluid in the base's frame, m/s.
-  /// Radii of the tube around each section, at the section's base and end, m; empty: those of the elastic
+  /// Radii of the tube around each section, at the section's base and end, m; empty: the radii of the elastic
   /// rod.
   std::vector<std::array<double, 2>> radii = {};
 };

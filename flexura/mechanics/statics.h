@@ -90,7 +90,7 @@ struct EquilibriumSlopes {
 /// the rod moves from its last stable shape to a minimum of the energy (RodDescent).
 class RodStatics {
  public:
-  /// Parameters and exceptions are those of RodChain.
+  /// Parameters and exceptions are as for RodChain.
   explicit RodStatics(Rod rod, std::span<const RodPlace> places = {});
 
   /// Sets length factors as RodChain::stretch_rest, from the next solution on. Displacements still refer to

@@ -21,8 +21,8 @@ class MappedTime {
   /// `clock` must outlive this object.
   explicit MappedTime(DeviceClock& clock) : clock_(clock) {}
 
-  /// Returns the time of an answer on the rig's clock, s. The parameters are those of DeviceClock::add().
-  /// While the relation of the clocks is unknown, returns `device`.
+  /// Returns the time of an answer on the rig's clock, s. The parameters are as for DeviceClock::add(). While
+  /// the relation of the clocks is unknown, returns `device`.
   double of(double device, double earliest, double latest) {
     (void)clock_.add(device, earliest, latest);
     if (!clock_.is_known()) return device;

@@ -26,8 +26,8 @@ struct DriveReading {
 };
 
 /// A motion controller. A DrivePort moves each axis to a target and needs no model of the arm. The axes are
-/// those of a Drive, in the drive's order. Commands return before the motion is completed. A command replaces
-/// the previous command. Targets outside an axis's range are clamped.
+/// the axes of a Drive, in the drive's order. Commands return before the motion is completed. A command
+/// replaces the previous command. Targets outside an axis's range are clamped.
 class DrivePort {
  public:
   virtual ~DrivePort() = default;

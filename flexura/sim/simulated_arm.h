@@ -20,7 +20,7 @@ namespace flexura {
 /// only on the commands and the rates of the sections.
 class SimulatedBends : public ArmPort {
  public:
-  /// The arguments are those of SimulatedArm. The plant must outlive this object.
+  /// The arguments are as for SimulatedArm. The plant must outlive this object.
   SimulatedBends(const ArmSetup& model, const ArmSetup& truth, Plant& plant, const ClockPort& clock,
                  double horizon);
 

@@ -203,7 +203,8 @@ TEST(V4l2Head, ReportsAnAxisThatOnlyAcceptsCommands) {
   clock.time = 1.5;
   const auto reading = opened.value()->read();
   ASSERT_FALSE(reading);
-  EXPECT_NE(text(*reading.fault()).find("head \"front\": /dev/video0: its tilt is at 0"), std::string::npos);
+  EXPECT_NE(text(*reading.fault()).find("head \"front\": /dev/video0: the camera's tilt is at 0"),
+            std::string::npos);
   fake->set_plugged(false);
   EXPECT_EQ(opened.value()->read().fault()->kind, FaultKind::link_lost);
   EXPECT_FALSE(V4l2Head::open({}, "front", clock, fake));

@@ -34,7 +34,7 @@ struct GrblIdentity {
 ///
 /// Targets and readings are motor positions, microsteps. The zero of the controller's positions is unknown,
 /// so home() or set_positions() must be called first. An alarm or a restart of the controller makes the
-/// positions unknown again. Then this drive refuses to move and to read until one of these functions is
+/// positions unknown again. Then this drive refuses to move and to read until home() or set_positions() is
 /// called.
 ///
 /// Functions may be called from several threads. halt() acts immediately, even while a command or homing of

@@ -10,7 +10,7 @@ namespace flexura {
 /// Adds a straight tube that casts a shadow, if the scene has shadows. The tube has two flat or two round
 /// ends.
 void add_caster(const Arc& tube, TipKind ends, const Pose& X_CW, Stage& stage);
-/// Adds a box that casts a shadow. The centre of the box is the origin of X_CB.
+/// Adds a box that casts a shadow. The centre of the box is at the origin of frame B in X_CB.
 void add_caster(const Pose& X_CB, const std::array<double, 3>& half_sizes, Stage& stage);
 
 /// Returns the fraction of the directional light that reaches a surface point which faces the light. The arm

@@ -30,7 +30,7 @@ mkdir -p docs/studies "$trials_kept"
   echo
   echo "The calibration estimates all these errors, the bends in each pose, and the true angles of each head position ([model](../calibration.md#the-model))."
   echo
-  echo "Each camera takes twelve pictures: three from its start, eight chosen by the planner, and one after the last motion. No pictures are rendered: a picture consists of the visible ones of nine markers and forty centerline points, with normally distributed noise."
+  echo "Each camera takes twelve pictures: three from its start, eight chosen by the planner, and one after the last motion. No pictures are rendered: a picture is the list of the visible points among nine markers and forty centerline points, with normally distributed noise."
   echo
   echo '```console'
   echo "\$ ./dev study calibration $trials $seed $drawn $printed $bundles"
@@ -40,7 +40,7 @@ mkdir -p docs/studies "$trials_kept"
   echo
   echo "## Comparison of methods with rendered pictures"
   echo
-  echo "Each method calibrates complete simulated rigs with rendered pictures. The pictures have 640 x 480 px, f = 800 px at ratio 1, and noise 2 to 3 of 255. The head steps are 0.075 degrees. Starting errors are uniformly distributed within 10 degrees in pan and tilt, 1 degree in roll, and 0.2 m per axis. Zoom ratios are 1 to 2.5. Errors of the model are up to 1 px in principal points, 1 % in bends and 0.5 % in lengths. For both bundle methods the errors are larger: 10 px in principal points and 1 degree in zero offsets. The others are 3 mm per axis in positions of tilt axes, and 0.02 in k1. The distance of the cylinder (radius 0.1 m) is 1.5 m, that of the arm 2.5 m. The results are the true values of the simulation."
+  echo "Each method calibrates complete simulated rigs with rendered pictures. The pictures have 640 x 480 px, f = 800 px at ratio 1, and noise 2 to 3 of 255. The head steps are 0.075 degrees. Starting errors are uniformly distributed within 10 degrees in pan and tilt, 1 degree in roll, and 0.2 m per axis. Zoom ratios are 1 to 2.5. Errors of the model are up to 1 px in principal points, 1 % in bends and 0.5 % in lengths. For both bundle methods the errors of the model are larger: 10 px in principal points and 1 degree in zero offsets. Further errors are 3 mm per axis in positions of tilt axes, and 0.02 in k1. The cameras are 1.5 m from the cylinder (radius 0.1 m), or 2.5 m from the arm. All results are true values, which the simulation knows."
   echo
   "$build/bin/paper_study" "$drawn" "$seed" "$printed" "$bundles" "$trials_kept" "$trials_kept/picture.svg"
   echo "![Starting errors and results of the methods as printed in the paper, and the distribution of the final angle errors of all methods](../images/calibration-study.svg)"

@@ -18,10 +18,10 @@ status=0
   echo
   echo "The first part has one step per second for a day. It tests dependence on time: clocks, the tracker's model, camera errors, histories. The second part has 30 steps per second for 1/24 of a day, and tests dependence on the number of steps."
   echo
-  echo "- Errors are true RMS errors along the arm at the time of the pictures, in % of its length. The column *at rest* is for the last second at each shape. The column *moving* is for the time between. The first error is large because of one picture, in which the straight arm still moves to the first shape."
+  echo "- Errors are true RMS errors along the arm at the time of the pictures, in % of its length. The column *at rest* is for the last second at each shape. The column *moving* is for the time between the shapes. The first error is large because of one picture, in which the straight arm still moves to the first shape."
   echo "- *Limited* is the number of steps that the limiter changed. *Messages* is the number of messages of the servo, including errors."
-  echo "- *Steady* means that a quantity does not grow. Errors in the last quarter may exceed those in the first quarter (without its first row) by at most 10 %. The heap may grow by under 4 bytes per step (a stored number has 8 bytes). Resident memory may grow by at most 256 kB more than that."
-  echo "- Memory grows at the beginning for two reasons. Border filters are computed on demand (\`BlurredSteps\`, 4 MB per camera in all), so runs under ten hours are not steady. The servo's histories fill in the first minute."
+  echo "- *Steady* means that a quantity does not grow. Errors in the last quarter may exceed those in the first quarter (without its first row) by at most 10 %. The heap may grow by under 4 bytes per step (a stored number has 8 bytes). Resident memory may grow by at most 256 kB more than the heap."
+  echo "- Memory grows at the beginning for two reasons. Border filters are computed on demand (\`BlurredSteps\`, 4 MB per camera in all), so runs under ten hours are not steady. The servo's history buffers become full within the first minute."
   echo
   echo '```console'
   echo "\$ ./dev study endurance $hours $seed"

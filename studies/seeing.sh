@@ -24,7 +24,7 @@ wait $!
   echo "The study measures pictures of random arms in front of a white background. Each arm has one to four sections of equal radius. The camera is 1.2 to 3 m away, in a random direction. The cameras have no distortion. The [renderer](../renderer.md) makes pictures of 640 x 480 px with noise and blur. Noise is the standard deviation of 8-bit values. Blur is the standard deviation of the point spread function (PSF), px. The page [Vision](../vision.md) explains the measurement. An error is the distance of a measured centerline sample from the backbone's exact image. Errors are computed for samples at which both borders of the arm are visible. These samples are corrected for perspective, from the middle between the borders to the image of the backbone."
   echo
   echo "- *Median* and *90 %* are quantiles of the RMS errors of single pictures. The columns *RMS* and *99 %* are for the errors of all samples. The column *not corrected* is without the correction for perspective."
-  echo "- *Interpolated* samples are not observed, because the arm covers itself, hides an end, or points at the camera there. One column has the RMS error with these samples."
+  echo "- *Interpolated* samples are not observed, because the arm covers itself, hides an end, or points at the camera there. The column *RMS with interpolated samples* includes these samples."
   echo "- *Crossing* arms are those whose backbone crosses itself in the picture."
   echo "- *Ends* is the median distance of the measured free end from the image of the backbone's end."
   echo "- *68 % / sigma* is the 68 % quantile of the errors divided by their estimated standard deviations; it should be 1."
@@ -48,7 +48,7 @@ wait $!
   echo "- Quantiles are nearest ranks. The second table compares the results with the aims."
   echo "- Two chi^2 tests check the covariance. A correct covariance exceeds their bounds once in a thousand studies. One test is for the mean squared error divided by its expectation. The other tests whether confidence regions in steps of 10 % contain equally many true bends. The last table has the results of both tests for different noise, for known arms."
   echo
-  echo "For comparison, a neural network estimates the shape from one real picture with a mean error of 0.36 % of the length, at 70 Hz. It was trained for one robot with two segments (C. Shentu et al., MoSS, 2023)."
+  echo "For comparison, a neural network estimates the shape from one real picture with a mean error of 0.36 % of the length, at 70 Hz. The network was trained for one robot with two segments (Shentu et al., MoSS, 2023)."
   echo
   cat "$parts/shapes"
 } >build/studies/seeing.md

@@ -15,7 +15,7 @@ mkdir -p docs/studies build/studies
   echo "# Accuracy of servos for an arm that swings"
   echo
   cat <<'END'
-The true arm consists of three [elastic rods](../mechanics.md) with a total length of 1 m. It is upright in view of two cameras. Nine tendons with stepper motors pull it. The model of the arm differs from the true arm:
+The true arm consists of three [elastic rods](../mechanics.md) with a total length of 1 m. It is upright in view of two cameras. Nine tendons with stepper motors pull the arm. The model of the arm differs from the true arm:
 
 | part of the rig | true value | model |
 | --- | --- | --- |

@@ -20,13 +20,13 @@ In this study, servos move a simulated arm in view of two cameras to random shap
 
 - **Cameras:** 640 x 480 px, f = 800 px, distance 2.5 m, gray, 30 Hz, delay 60 ms, exposure 2 ms, noise 2 to 3 of 255. For "with bands" the pictures are in colour, and the arm has twelve bands, which are also used by the calibration.
 - **Targets:** random shapes with bends uniformly distributed within +-1.2 rad in each direction, with four targets per rig. All laws have equal targets. The arm starts straight; for `moments` it starts within 0.15 rad of each target bend.
-- **Converged:** the observed error is below 0.2 % of the length for 1 s. A servo fails after 8 s.
+- **Converged:** the observed error is below 0.2 % of the length for 1 s. A servo that has not converged after 8 s fails.
 - **Final errors** are true errors at the end, in % of the length. They and all other values are for converged targets only.
 - **Distance to a limit** is the smallest distance of a bend from its limit during the motion, as a fraction of the limit.
-- **Error with exact target pictures** is the final true error if the target pictures are exact pictures of the true cameras and the servo uses the nominal cameras. One column is without, the other with the servo's camera prior.
+- **Error with exact target pictures** is the final true error if the target pictures are exact pictures of the true cameras and the servo uses the nominal cameras. One column is without the servo's camera prior, the other column with this prior.
 - **Starting errors of the calibration `bundle`:** up to 3 degrees in pan and tilt, 0.3 degrees in roll, and 6 cm along each axis. The zoom ratios are 1 to 1.45.
 
-All targets must be reached, with an error below 2 % of the length after 2 s and a final RMS error of 0.1 %. For comparison, publications on other arms and cameras report errors of 1 mm at rest, or 1.6 % of the picture's size. Others report 2 to 2.6 % of the length at the tip.
+All targets must be reached, with an error below 2 % of the length after 2 s and a final RMS error of 0.1 %. For comparison, publications on other arms and cameras report errors of 1 mm at rest, or 1.6 % of the picture's size. Other publications report 2 to 2.6 % of the length at the tip.
 
 END
   echo '```console'

@@ -30,7 +30,8 @@ int compare(std::size_t motions, std::size_t samples, std::uint64_t seed) {
       "reported time spans without a caveat whose worst value is exceeded by a sample by more than 1e-4 (m, "
       "or relative)",
       found.understated);
-  print_row("reported time spans with a caveat whose worst value is exceeded in this way", found.flagged);
+  print_row("reported time spans with a caveat whose worst value is exceeded by a sample by more than 1e-4",
+            found.flagged);
   std::printf(
       "| largest difference by which a sample exceeds a worst value without a caveat (m, or relative) | %.1e "
       "|\n",

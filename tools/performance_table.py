@@ -44,7 +44,7 @@ ROWS = [
         "jacobian_of_3_sections", 150e-9, "Orocos KDL", "jacobian_of_3_sections_kdl",
     ),
     Row(
-        "inverse kinematics of a pose, without a start", "inverse_bench",
+        "inverse kinematics of a pose, without an initial shape", "inverse_bench",
         "inverse_cold/kind:2", 20e-6, "Orocos KDL", "inverse_kdl_cold",
     ),
     Row("safety check of a motion of 10 s, four obstacles", "safety_bench", "laboratory_10_s_four_obstacles"),
@@ -72,8 +72,8 @@ ROWS = [
         "centerline in a picture, 1920 x 1080", "vision_bench",
         "find_arm/1920", rate(1800), "OpenCV, without a centerline", "opencv/1920",
     ),
-    Row("shape fit to measured centerlines, tracking", "shape_bench", "fit_following/0", 80e-6),
-    Row("shape from two pictures, tracking", "shape_bench", "pictures_following/0", rate(3000)),
+    Row("shape fit to measured centerlines, from the previous shape", "shape_bench", "fit_following/0", 80e-6),
+    Row("shape from two pictures, from the previous shape", "shape_bench", "pictures_following/0", rate(3000)),
     Row(
         "calibration of two cameras with 13 boards", "intrinsics_bench",
         "calibrate/real_each_and_both", 20e-3, "OpenCV", "opencv_calibrates/real_each_and_both",

@@ -16,7 +16,7 @@ struct TableInfo;
 struct NumberRange {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  bool open_min = false;  ///< Whether min itself is excluded.
+  bool open_min = false;  ///< Whether the number `min` itself is out of range.
 
   /// Returns whether `value`, in base units, is within the range; false for NaN.
   [[nodiscard]] bool contains(double value) const {
@@ -27,8 +27,8 @@ struct NumberRange {
   [[nodiscard]] std::string text(const UnitSpelling& spelling) const;
 };
 
-/// Returns the range of numbers greater than `min`. Bounds of this function and the next three are in base
-/// units.
+/// Returns the range of numbers greater than `min`. The bounds of this function and of the next three
+/// functions are in base units.
 [[nodiscard]] inline NumberRange above(double min) { return {.min = min, .open_min = true}; }
 /// Returns the range of numbers greater than or equal to `min`.
 [[nodiscard]] inline NumberRange at_least(double min) { return {.min = min}; }

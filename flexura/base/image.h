@@ -9,7 +9,7 @@
 namespace flexura {
 
 /// A picture of `height` rows of `width` pixels with `channels` values each. Values are stored row by row
-/// from the top, without gaps. Three channels are red, green and blue.
+/// from the top, without gaps. With three channels, the values are red, green and blue.
 template <typename T>
 class Image {
  public:

@@ -26,8 +26,8 @@ struct Node {
   Value value;
   SourcePosition where;  ///< Position of the value. The position of the value's key is Member::where.
 
-  /// Returns the value if it has type T, one of the types in Value; otherwise null. An integer is not a
-  /// double.
+  /// Returns the value if it has type T, one of the types in Value; otherwise null. An integer does not count
+  /// as a double.
   template <class T>
   [[nodiscard]] const T* as() const {
     return std::get_if<T>(&value);
@@ -36,7 +36,7 @@ struct Node {
   [[nodiscard]] T* as() {
     return std::get_if<T>(&value);
   }
-  /// Returns whether there is no value. Empty texts, arrays and tables are values.
+  /// Returns whether there is no value. Empty texts, arrays and tables count as values.
   [[nodiscard]] bool empty() const { return std::holds_alternative<std::monostate>(value); }
 
   /// Returns the value under `key` of a table; null if the key is missing or this node is not a table. The

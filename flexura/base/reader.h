@@ -39,7 +39,8 @@ class Reader {
   /// Reports a problem at the current position: "PATH: what".
   void problem(std::string what);
   /// Reports a problem at `path`, relative to the current position ("task[0].to.bends"). If the document does
-  /// not contain the path, the position is that of its longest part that the document contains.
+  /// not contain the path, the reader reports the position of the longest part of the path that the document
+  /// contains.
   void problem_at(std::string_view path, std::string what);
   /// Reports a problem at the character `offset`, counted from 0, of the text at `path`. The message has the
   /// character's position in the file if known; otherwise "at character N of TEXT" is appended.

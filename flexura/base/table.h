@@ -28,7 +28,7 @@ namespace flexura {
 template <class T>
 struct Codec;
 
-/// The functions of a Codec without its type T: values are given by their addresses.
+/// The functions of a Codec in a form that does not depend on T: values are given by their addresses.
 struct ValueCodec {
   bool (*read)(const Node& node, const Spec& spec, Reader& reader, void* value);
   Node (*write)(const void* value);

@@ -31,8 +31,8 @@ struct UnitSpelling {
 /// Returns the base unit's symbol ("m", "rad"), "" for Unit::none.
 [[nodiscard]] inline std::string_view symbol(Unit unit) { return spellings(unit).front().symbol; }
 
-/// Returns the suffixes of all units. Error messages use them to distinguish a wrong unit from a misspelt
-/// name.
+/// Returns the suffixes of all units. Error messages use these suffixes to distinguish a wrong unit from a
+/// misspelt name.
 [[nodiscard]] std::span<const std::string_view> all_unit_suffixes();
 
 /// Returns a key without its unit's suffix: "length" for "length_mm" and for "length".

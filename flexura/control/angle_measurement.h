@@ -26,8 +26,8 @@ struct AngleMeasurement {
 };
 
 /// Measures the coordinates of a DistributedArm at the times 0, step, 2 step, ..., with a delay. Angles at
-/// the nodes have normally distributed noise, independent from node to node and from time to time. The state
-/// before time 0 counts as equal to that at time 0.
+/// the nodes have normally distributed noise, independent from node to node and from time to time. Before
+/// time 0, the state is assumed to equal the state at time 0.
 class MeasuredCoordinates {
  public:
   /// `nodes`: number of coordinates of each angle of the arm. Throws std::invalid_argument for numbers out of
@@ -36,7 +36,7 @@ class MeasuredCoordinates {
 
   /// Returns the time of the next measurement, s.
   [[nodiscard]] double next() const { return static_cast<double>(count_) * measurement_.step; }
-  /// Adds the state (x, dx/dt) at next().
+  /// Measures the arm's state (x, dx/dt), which must be the state at the time next().
   void take(const Eigen::VectorXd& x, const Eigen::VectorXd& v);
   /// Returns the coordinates of the newest measurement; empty before the first measurement.
   [[nodiscard]] const Eigen::VectorXd& seen() const { return seen_; }

@@ -10,7 +10,7 @@ enum class AngleBasis {
   /// One polynomial along the whole arm. The coordinates are the polynomial's values at Gauss-Legendre nodes.
   polynomial,
   /// Linear in every section. The coordinates are the angle's values at the sections' ends, and at the base
-  /// if it is free.
+  /// if the base is free.
   sections,
 };
 
@@ -39,9 +39,9 @@ struct AngleShapes {
 };
 
 /// Returns shapes with `points` >= 1 quadrature points per section. `nodes` >= 1 is the number of coordinates
-/// in the polynomial basis. The basis `sections` has one coordinate per section, and another one if the base
-/// is free. Throws std::invalid_argument for smaller numbers, no sections, or a length that is not positive
-/// and finite.
+/// in the polynomial basis. The basis `sections` has one coordinate per section, and one more coordinate if
+/// the base is free. Throws std::invalid_argument for smaller numbers, no sections, or a length that is not
+/// positive and finite.
 [[nodiscard]] AngleShapes angle_shapes(const std::vector<double>& lengths, AngleBasis basis, bool is_clamped,
                                        int nodes, int points);
 

@@ -34,8 +34,8 @@ struct DistributedArmModel {
 
 /// Equations of motion of a distributed arm. The arm is discretised along s before Lagrange's equations are
 /// derived, so that energies and forces are exactly consistent (docs/control.md, "The distributed arm"). The
-/// coordinates x are those of theta (rad), then those of q (rad), then u_i (m) of variable lengths (see
-/// AngleShapes). The magnitude of q must remain below pi/2, where the angles are singular. After
+/// coordinates x are first the coordinates of theta (rad), then those of q (rad), then u_i (m) of variable
+/// lengths (see AngleShapes). The magnitude of q must remain below pi/2, where the angles are singular. After
 /// construction, only functions that return vectors or matrices by value allocate memory.
 class DistributedArm {
  public:
@@ -44,7 +44,8 @@ class DistributedArm {
   explicit DistributedArm(const DistributedArmModel& model);
 
   [[nodiscard]] const DistributedArmModel& model() const { return model_; }
-  /// Returns the shape functions of both angles. In this class, "the points" are their quadrature points.
+  /// Returns the shape functions of both angles. In this class, "the points" are the quadrature points of the
+  /// shape functions.
   [[nodiscard]] const AngleShapes& shapes() const { return shapes_; }
   /// Returns the number of all coordinates.
   [[nodiscard]] Eigen::Index size() const { return size_; }
@@ -122,8 +123,8 @@ class DistributedMotion {
   /// Sets the time to 0 and the arm to rest at the coordinates `x`.
   void start(const Eigen::VectorXd& x);
   /// Advances to the time `until`, s. The integrator calls go_on() before every step and stops if go_on()
-  /// returns false. An empty go_on never stops it. Returns false if go_on() stopped the integration, if the
-  /// integrator failed (DormandPrince), or if the arm reached a singularity.
+  /// returns false. An empty go_on never stops the integration. Returns false if go_on() stopped the
+  /// integration, if the integrator failed (DormandPrince), or if the arm reached a singularity.
   [[nodiscard]] bool advance(double until, const std::function<bool()>& go_on = {});
 
   /// Returns the time since the start, s.

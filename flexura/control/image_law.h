@@ -26,8 +26,8 @@ struct ImageStep {
   bool is_singular = false;  ///< Whether some motion of the arm changes no feature: the ratio is below 1e-6.
 };
 
-/// Moves features to their desired values by damped least squares (docs/control.md, eq. 20; C. W. Wampler,
-/// 1986; Y. Nakamura, H. Hanafusa, 1986):
+/// Moves features to their desired values by damped least squares (docs/control.md, eq. 20; Wampler, 1986;
+/// Nakamura, Hanafusa, 1986):
 ///   dx = -(1 - exp(-rate dt)) (J^T J + mu^2 I)^-1 J^T e.
 class ImageLaw {
  public:
@@ -52,7 +52,7 @@ class ImageLaw {
   [[nodiscard]] ImageStep step(const ArmState& sent, const Eigen::VectorXd& error, const Eigen::MatrixXd& J,
                                double dt) const;
 
-  /// Buffers of step(). Each thread needs its own.
+  /// Buffers of step(). Each thread needs separate buffers.
   struct Work {
     Eigen::MatrixXd normal, factor;  // Lower triangle of J^T J; Cholesky factor of it.
     Eigen::VectorXd x, dx, column;

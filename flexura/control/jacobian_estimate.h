@@ -6,8 +6,8 @@
 // and 22).
 namespace flexura {
 
-/// Broyden's rank-one update: each motion changes J to the nearest matrix that explains the motion (C. G.
-/// Broyden, 1965; for servoing: M. Jagersand, O. Fuentes, R. Nelson, 1997).
+/// Broyden's rank-one update: each motion changes J to the nearest matrix that explains the motion (Broyden,
+/// 1965; for servoing: Jagersand, Fuentes, Nelson, 1997).
 class BroydenEstimate {
  public:
   /// `share` in (0, 1]: share of each correction that is applied. `least`: motions of the variables with a
@@ -27,7 +27,7 @@ class BroydenEstimate {
 };
 
 /// Recursive least squares with forgetting: J is the least-squares fit to all motions, with smaller weights
-/// for older ones (L. Ljung, "System Identification", 11.2).
+/// for older motions (Ljung, "System Identification", 11.2).
 class RecursiveEstimate {
  public:
   /// `forgetting` in (0, 1]: factor by which each new motion multiplies the weights of earlier motions.
@@ -38,7 +38,7 @@ class RecursiveEstimate {
                              double least = 1e-6);
 
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return J_; }
-  /// Learns from a motion. Arguments, result and errors are those of BroydenEstimate::learn.
+  /// Learns from a motion. Arguments, result and exceptions are as for BroydenEstimate::learn.
   bool learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& df);
 
  private:

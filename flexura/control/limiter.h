@@ -18,13 +18,13 @@ namespace flexura {
 class ContactWatch;
 struct ConvexLimits;
 
-/// Limits of a limiter, in addition to those of the arm.
+/// Limits of a limiter, in addition to the limits of the arm.
 struct LimiterConfig {
   double step = 1.0 / 30;  ///< Time between commands, s; > 0.
   std::optional<Drive> drive =
       {};  ///< Drive of the arm: limits of its motors' speed, step rate, acceleration and position.
-  /// Time between the rows of the command list that the motors follow, s; 0: `step`. Motor rates change
-  /// within this time.
+  /// Time between the rows of the command list that the motors follow, s; 0: `step`. The rates of the motors
+  /// change within this time.
   double list_step = 0;
   std::vector<Obstacle> obstacles =
       {};  ///< Obstacles that the arm must not touch; checked only with looks_ahead.
@@ -63,15 +63,15 @@ struct LimiterFault {
 class CommandLimiter {
  public:
   /// `start`: the command at which the arm is initially at rest. Throws std::invalid_argument if this state
-  /// does not fit the arm, violates a limit or (with looks_ahead) causes a contact. Also throws it for a step
-  /// that is not positive.
+  /// does not fit the arm, violates a limit or (with looks_ahead) causes a contact. Also throws
+  /// std::invalid_argument for a step that is not positive.
   CommandLimiter(ArmModel arm, LimiterConfig config, const ArmState& start);
   CommandLimiter(const Arm& driven, LimiterConfig config, const ArmState& start)
       : CommandLimiter(ArmModel(driven), std::move(config), start) {}
 
-  /// Returns the command for the next step: the allowed one that is nearest to `asked`. Distance is the
+  /// Returns the command for the next step: the allowed command that is nearest to `asked`. Distance is the
   /// Euclidean norm over bends (rad) and stretches. Limits are linearised about the present command. If the
-  /// linearisation is too inexact, the command is between the braking command and the nearest one.
+  /// linearisation is too inexact, the command is between the braking command and the nearest command.
   [[nodiscard]] LimitedCommand next(const ArmState& asked);
   /// Returns a shorter step towards the law's command, so that every motor can brake to its target at half
   /// its largest acceleration. This function is meant for laws that reduce the error in each step by the
@@ -83,9 +83,9 @@ class CommandLimiter {
   /// Stores the last observation, for the record of a fault.
   void observe(const ArmState& observed) { observed_ = observed; }
   /// Stops the arm because of a fault, such as an error of a port or a lost estimate. If several faults
-  /// occur, keeps the first.
+  /// occur, the limiter keeps the first fault.
   void fault(const std::string& reason);
-  /// Returns the record of a fault at the current time, with this reason.
+  /// Returns the record of a fault that occurs now because of `reason`.
   [[nodiscard]] LimiterFault record(std::string reason) const {
     return {static_cast<double>(steps_) * config_.step, std::move(reason), observed_, sent_, asked_};
   }

@@ -102,9 +102,9 @@ void LyapunovMonitor::explain(LyapunovVerdict& verdict, double scale) const {
     if (explains(2))
       verdict.reasons.push_back(
           fmt::format("the law's force is {:.2f} times the potential's force, not 1 times{}", 1 - shares[2],
-                      shares[2] > 1 ? " (it drives the arm away from the target)" : ""));
+                      shares[2] > 1 ? " (the force drives the arm away from the target)" : ""));
     if ((imbalance - courses * shares).cwiseAbs().maxCoeff() > 0.05 * verdict.imbalance)
-      verdict.reasons.emplace_back("the forces on the arm are not those of the law");
+      verdict.reasons.emplace_back("the forces on the arm are not the forces of the law");
   }
   if (!verdict.is_monotone && verdict.reasons.empty()) verdict.reasons.emplace_back("W increases");
   if (!verdict.is_settled && verdict.reasons.empty()) verdict.reasons.emplace_back("W has not settled yet");

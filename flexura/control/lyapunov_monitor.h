@@ -10,8 +10,8 @@ struct LyapunovSample {
   double time = 0;       ///< Time, s.
   double kinetic = 0;    ///< T.
   double potential = 0;  ///< Pi.
-  double gravity = 0;    ///< V_g, J; 0 if Pi includes it.
-  double elastic = 0;    ///< V_e, J; 0 if Pi includes it.
+  double gravity = 0;    ///< V_g, J; 0 if Pi includes V_g.
+  double elastic = 0;    ///< V_e, J; 0 if Pi includes V_e.
   double taken = 0;      ///< Energy removed by the law's damping since the start: the integral of x_t K x_t.
   double damped = 0;     ///< Energy removed by the arm's own damping since the start.
 };

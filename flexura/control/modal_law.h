@@ -28,9 +28,10 @@ struct ModalLawConfig {
 
 /// Control of an oscillating arm by the forces in its modes (docs/control.md, "Computed torque and artificial
 /// potential"). Tendons act on the arm as springs: a command moves the equilibrium, and the force in a mode
-/// is proportional to the distance of the arm from it. The law chooses the equilibrium whose force gives the
-/// desired acceleration. Parts of the error outside of the modes decay at the configured rate. For an arm
-/// without modes, the law is resolved-rate control of the shape. A limiter must check its commands.
+/// is proportional to the distance of the arm from the equilibrium. The law chooses the equilibrium whose
+/// force gives the desired acceleration. Parts of the error outside of the modes decay at the configured
+/// rate. For an arm without modes, the law is resolved-rate control of the shape. A limiter must check the
+/// commands of the law.
 class ModalLaw {
  public:
   /// `driven`: the arm in terms of the sections that the drives bend. Throws std::invalid_argument for

@@ -23,13 +23,13 @@ struct PlaneError {
 
 /// Returns true if the two projections determine the rotation from the direction `measured` to `desired`,
 /// each given as angles theta and q, rad. Both angles of both directions must differ by at least 10 degrees
-/// from pi/2 and -pi/2, and theta must not cross such an angle between the directions. Otherwise, points must
-/// be triangulated from both pictures. Theta is continuous along the arm: angles that differ by a full turn
-/// count as different.
+/// from pi/2 and -pi/2, and theta must not pass pi/2 or -pi/2 between the two directions. Otherwise, points
+/// must be triangulated from both pictures. Theta is continuous along the arm: angles that differ by a full
+/// turn count as different.
 [[nodiscard]] bool planes_determine(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired);
 
-/// Returns true if the direction is towards +Y in one projection and towards -Y in the other one. Noise can
-/// cause such contradictions.
+/// Returns true if the direction is towards +Y in one projection and towards -Y in the other projection.
+/// Noise can cause such contradictions.
 [[nodiscard]] bool planes_contradict(const PlaneView& seen);
 
 /// Returns the errors of the angles from the plane errors e_1 = alpha_1 - alpha_1d and e_2 = alpha_2 -

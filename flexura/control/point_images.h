@@ -11,9 +11,9 @@
 namespace flexura {
 
 /// Pixels of material points of an arm in cameras, and their derivatives with respect to the arm's state
-/// (docs/control.md, eq. 16). The results equal those of BackboneJacobian up to rounding. This class computes
-/// only positions, not rotations, and is fast for many points in a few cameras. Allocates memory only at the
-/// first use.
+/// (docs/control.md, eq. 16). The results equal the results of BackboneJacobian up to rounding. This class
+/// computes only positions, not rotations, and is fast for many points in a few cameras. Allocates memory
+/// only at the first use.
 class PointImages {
  public:
   /// `shares`: positions of the points, as shares of the unstretched arm's length from its base. Throws

@@ -64,7 +64,7 @@ std::vector<std::string> PotentialLaw::violations() const {
   std::vector<std::string> found;
   if (gains_.sign != 1)
     found.push_back(fmt::format(
-        "the potential's force has the sign {:+g}, not +1: it drives the arm away from the target",
+        "the potential's force has the sign {:+g}, not +1: the force drives the arm away from the target",
         gains_.sign));
   if (gains_.stiffness.minCoeff() <= 0 || (has_lengths_ && gains_.length_stiffness <= 0))
     found.emplace_back("the potential has no minimum at the target: a stiffness k is not above 0");

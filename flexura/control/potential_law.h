@@ -12,13 +12,14 @@ namespace flexura {
 /// How an artificial potential handles the arm's elasticity.
 enum class ElasticityRule : std::uint8_t {
   cancelled,  ///< The law adds dV_e/dx.
-  shaped,     ///< V_e is part of the potential. A linear term makes its gradient at the target zero.
+  shaped,  ///< V_e is part of the potential. A linear term makes the potential's gradient at the target zero.
   /// The law neglects V_e. This violates a condition of the theory, unless the target has no bend and no
-  /// stretch: then the elastic forces vanish there, and it counts as `shaped`.
+  /// stretch: then the elastic forces vanish at the target, and `ignored` counts as `shaped`.
   ignored,
 };
 
-/// Gains of the law. The defaults satisfy the theory; other values can violate it, to show the effects.
+/// Gains of the law. The defaults satisfy the conditions of the theory. Other values can violate these
+/// conditions, to show the effects.
 struct PotentialGains {
   Eigen::Vector2d stiffness = {20, 20};  ///< k_theta and k_q, N m per length (m) and rad; > 0.
   Eigen::Matrix2d damping =
@@ -60,8 +61,8 @@ class PotentialLaw {
 
   /// Returns the target coordinates.
   [[nodiscard]] const Eigen::VectorXd& target() const { return target_; }
-  /// Returns the gains in effect. `elasticity` is `shaped` instead of `ignored` if elastic forces vanish at
-  /// the target.
+  /// Returns the gains that the law uses. `elasticity` is `shaped` instead of `ignored` if elastic forces
+  /// vanish at the target.
   [[nodiscard]] const PotentialGains& gains() const { return gains_; }
 
  private:

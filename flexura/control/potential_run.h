@@ -17,8 +17,8 @@ namespace flexura {
 /// law uses the arm's exact angles or measurements. With measurements, the potential's force and the
 /// compensation of gravity and elasticity use the last measured shape and stay constant until the next
 /// measurement. With two image planes, the potential's force uses the plane errors (eq. 14). The damping
-/// always uses the arm's true rates, because it is part of the drives. With few drives, the force on the arm
-/// is the one nearest to the law's force that the drives can produce.
+/// always uses the arm's true rates, because the drives themselves produce the damping. With few drives, the
+/// force on the arm is the producible force that is nearest to the law's force.
 class PotentialRun {
  public:
   /// `start`: coordinates of the arm at the start, where it is at rest. `drives`: the matrix G
@@ -31,8 +31,8 @@ class PotentialRun {
   PotentialRun& operator=(const PotentialRun&) = delete;
 
   /// Advances to the time `until`, s. The integrator calls go_on() before every step and stops if go_on()
-  /// returns false. An empty go_on never stops it. Returns false if the run stopped before `until`. Then
-  /// stopped() returns the reason ("cancelled" if go_on() stopped it).
+  /// returns false. An empty go_on never stops the integration. Returns false if the run stopped before
+  /// `until`. Then stopped() returns the reason ("cancelled" if go_on() stopped it).
   [[nodiscard]] bool advance(double until, const std::function<bool()>& go_on = {});
   /// Returns why the run cannot continue, or "".
   [[nodiscard]] const std::string& stopped() const { return stopped_; }

@@ -19,7 +19,7 @@ struct PredictiveLawConfig {
   int most_iterations = 60;  ///< Largest number of iterations of the quadratic program's solver.
 };
 
-/// A linear limit on all commands u of the horizon: by_command . (u - sent) <= room.
+/// A linear limit on all commands u of the horizon: by_command (u - sent) <= room.
 struct PredictiveLimit {
   Eigen::RowVectorXd by_command;  ///< Derivatives with respect to bend_x, bend_y and stretch of each section.
   /// Distance of the present command `sent` from the limit; negative if `sent` violates the limit.
@@ -33,7 +33,7 @@ struct PredictiveState {
   ArmState rest;     ///< Shape of the arm at rest under `sent`.
   ArmState desired;  ///< Target shape now.
   /// Target shape at the end of each later step. If the list is shorter than the horizon, the last target
-  /// remains.
+  /// also applies to the remaining steps.
   std::vector<ArmState> desired_later = {};
   std::vector<PredictiveLimit> limits = {};
   std::vector<SwingMode> modes = {};  ///< Modes of the arm's oscillation; empty for an arm without dynamics.
@@ -42,16 +42,16 @@ struct PredictiveState {
   Eigen::VectorXd frequency_factors = {};
 };
 
-/// Model predictive control of an arm's shape (docs/control.md, "Predictive law"). Over a horizon, it chooses
-/// the changes a_k of the command's rate that minimise
+/// Model predictive control of an arm's shape (docs/control.md, "Predictive law"). Over a horizon, the law
+/// chooses the changes a_k of the command's rate that minimise
 ///   sum over k of |e_k|^2 + rho |a_k / step|^2,
 /// where e_k is the predicted distance from the target, root mean square along the arm, share of its length.
 /// The prediction is linear about the present command. Commands change the equilibrium shape according to its
-/// derivative and excite the modes, which oscillate freely in between. Limits are those of bends and bend
-/// rates, and the given linear ones (PredictiveLimit); stretches are not limited. The solver is the
-/// alternating direction method of multipliers (S. Boyd et al., 2011), with projections on discs and
+/// derivative and excite the modes, which oscillate freely in between. The law limits bends and bend rates,
+/// and satisfies the given linear limits (PredictiveLimit); stretches are not limited. The solver is the
+/// alternating direction method of multipliers (Boyd et al., 2011), with projections on discs and
 /// half-spaces. The iterations of this method satisfy the limits approximately. The next command satisfies
-/// those of bends and rates exactly. A limiter must check it.
+/// the limits of bends and rates exactly. A limiter must check the command.
 class PredictiveLaw {
  public:
   /// `driven`: the arm in terms of the sections that the drives bend. `shaped`: the arm with one section per
@@ -63,7 +63,7 @@ class PredictiveLaw {
   [[nodiscard]] ArmState step(const PredictiveState& now, const Eigen::MatrixXd& by_command);
 
   /// Quadratic program of the last step, for comparison with other solvers. The changes x of the rates
-  /// minimise x . H x / 2 + gradient . x. The references are valid until the next step.
+  /// minimise x^T H x / 2 + gradient^T x. The references are valid until the next step.
   struct Problem {
     const Eigen::MatrixXd& H;
     const Eigen::VectorXd& gradient;

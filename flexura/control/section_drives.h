@@ -11,8 +11,8 @@ namespace flexura {
 /// Returns the matrix G of drives that apply a uniform torque along each section. The matrix has size() rows.
 /// G has 2 columns per section, and then one column for each variable length. Column 2k is a constant torque
 /// on theta along section k, and column 2k + 1 a constant torque on q (N m per length). The columns of
-/// variable lengths are the forces (N) that change them. The coordinates of the drives are y = G^T x: the
-/// integrals of the angles over each section.
+/// variable lengths are the forces (N) that change these lengths. The coordinates of the drives are y = G^T
+/// x: the integrals of the angles over each section.
 [[nodiscard]] Eigen::MatrixXd section_torques(const DistributedArm& arm);
 
 /// Returns the matrix G of drives that bend sections. Column 2k is the moment (N m) on the change of theta

@@ -73,7 +73,7 @@ TEST(SectionDrives, LeaveForcesOverOfAnArmThatHasMoreThanTheyMove) {
   PotentialRun run(arm, law, bent(-0.3, 0.2), {}, {}, section_moments(arm));
   const LyapunovVerdict cut = watched(run, 3, 0.03);
   EXPECT_FALSE(cut.is_balanced);
-  EXPECT_THAT(cut.reasons, testing::Contains(testing::HasSubstr("not those of the law")));
+  EXPECT_THAT(cut.reasons, testing::Contains(testing::HasSubstr("not the forces of the law")));
   EXPECT_GT(run.left_over(), 0.01);
 }
 

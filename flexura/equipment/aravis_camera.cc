@@ -122,7 +122,7 @@ std::string AravisConnection::set(ArvCamera* camera) {
       sensor.pixels == PixelKind::color ? ARV_PIXEL_FORMAT_RGB_8_PACKED : ARV_PIXEL_FORMAT_MONO_8;
   arv_camera_set_pixel_format(camera, wanted, format);
   if (format.has_any()) {
-    return fmt::format("it has no pixel format {} ({}): set sensor.pixels to another",
+    return fmt::format("the camera has no pixel format {} ({}): set sensor.pixels to another",
                        sensor.pixels == PixelKind::color ? "RGB8" : "Mono8", format.text());
   }
   if (std::string problem = set_region(camera); !problem.empty()) return problem;
@@ -130,7 +130,7 @@ std::string AravisConnection::set(ArvCamera* camera) {
   if (arv_camera_is_frame_rate_available(camera, error) != 0) {
     arv_camera_set_frame_rate(camera, sensor.frame_rate, error);
     if (error.has_any())
-      return fmt::format("it refuses {:.6g} frames/s: {}", sensor.frame_rate, error.text());
+      return fmt::format("the camera refuses {:.6g} frames/s: {}", sensor.frame_rate, error.text());
   }
   Caught mode;
   arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, mode);
@@ -142,7 +142,7 @@ std::string AravisConnection::set(ArvCamera* camera) {
       arv_camera_gv_set_packet_size(camera, static_cast<gint>(config_.packet_size), size);
     else
       arv_camera_gv_auto_packet_size(camera, size);
-    if (size.has_any()) return "it refuses the packet size: " + size.text();
+    if (size.has_any()) return "the camera refuses the packet size: " + size.text();
   } else {
     gaps_ = NumberGaps(0, UINT64_MAX);
   }
@@ -158,8 +158,8 @@ std::string AravisConnection::set_region(ArvCamera* camera) const {
   if (error.has_any()) return error.text();
   if (width > full_width || height > full_height) {
     return fmt::format(
-        "its sensor has {} x {} pixels, fewer than {} x {}: set sensor.width and sensor.height", full_width,
-        full_height, width, height);
+        "the camera's sensor has {} x {} pixels, fewer than {} x {}: set sensor.width and sensor.height",
+        full_width, full_height, width, height);
   }
   // Offsets have increments, mostly 1, 2, 4 or 8.
   constexpr int grid = 16;
@@ -172,7 +172,7 @@ std::string AravisConnection::set_region(ArvCamera* camera) const {
   arv_camera_get_region(camera, &real_x, &real_y, &real_width, &real_height, reading);
   if (!error.has_any() && !reading.has_any() && real_width == width && real_height == height) return "";
   return fmt::format(
-      "it gives {} x {} pixels (its sensor has {} x {}), not {} x {}: set sensor.width and "
+      "the camera gives {} x {} pixels (its sensor has {} x {}), not {} x {}: set sensor.width and "
       "sensor.height{}",
       real_width, real_height, full_width, full_height, width, height,
       error.has_any() ? " (" + error.text() + ")" : "");
@@ -185,13 +185,14 @@ std::string AravisConnection::set_light(ArvCamera* camera) {
       arv_camera_set_exposure_time_auto(camera, ARV_AUTO_OFF, error);
     if (!error.has_any()) arv_camera_set_exposure_time(camera, *config_.exposure * 1e6, error);
     if (error.has_any())
-      return fmt::format("it refuses an exposure of {:.6g} s: {}", *config_.exposure, error.text());
+      return fmt::format("the camera refuses an exposure of {:.6g} s: {}", *config_.exposure, error.text());
   }
   if (config_.gain) {
     if (arv_camera_is_gain_auto_available(camera, error) != 0)
       arv_camera_set_gain_auto(camera, ARV_AUTO_OFF, error);
     if (!error.has_any()) arv_camera_set_gain(camera, *config_.gain, error);
-    if (error.has_any()) return fmt::format("it refuses a gain of {:.6g}: {}", *config_.gain, error.text());
+    if (error.has_any())
+      return fmt::format("the camera refuses a gain of {:.6g}: {}", *config_.gain, error.text());
   }
   Caught reading;
   const double exposure = arv_camera_get_exposure_time(camera, reading) * 1e-6;

@@ -22,8 +22,8 @@ struct AravisConfig {
   std::int64_t packet_size =
       0;  ///< Size of GigE Vision packets, bytes; 0: the largest size that the network supports.
   /// Whether the program reads GigE Vision packets directly from the network interface, if it has the
-  /// permission (CAP_NET_RAW). This needs less computing time. Use false for a camera that is simulated on
-  /// the same computer.
+  /// permission (CAP_NET_RAW). Direct reading needs less computing time. Use false for a camera that is
+  /// simulated on this computer.
   bool packet_socket = true;
   double silence = 5;        ///< Time without a frame after which the program reconnects, s.
   double longest_pause = 5;  ///< Longest pause between two attempts to connect, s.
@@ -39,8 +39,8 @@ const Table<AravisConfig>& fields_of(const AravisConfig*);
 [[nodiscard]] std::vector<std::string> aravis_cameras();
 
 /// Starts a camera with the size, channels and frame rate of `camera.sensor`: Mono8 or RGB8. If the image is
-/// smaller than the camera's sensor, it shows the middle of the sensor. A thread connects, and reconnects
-/// after a loss. Lost frames are counted by the camera's frame numbers.
+/// smaller than the camera's sensor, the image shows the middle of the sensor. A thread connects, and
+/// reconnects after a loss. Lost frames are counted by the camera's frame numbers.
 ///
 /// Frame::time is the camera's time stamp plus half of the exposure time that the camera reports. This
 /// assumes that the time stamp is the start of the exposure. Use ClockedCamera for times on the rig's clock.

@@ -22,13 +22,13 @@ struct CanopenNode {
   std::uint16_t statusword = 0;        ///< Statusword in the last TPDO 1.
   std::int32_t position = 0;           ///< Position in the last TPDO 1, in the drive's units.
   NmtState state = NmtState::boot_up;  ///< State in the last heartbeat.
-  double heard = -1;                   ///< Time when its last heartbeat was read, s; below 0: never.
+  double heard = -1;                   ///< Time when the node's last heartbeat was read, s; below 0: never.
   bool has_restarted = false;          ///< Whether the node has booted since the flag was cleared.
   Emergency emergency = {};            ///< Last emergency; code 0: none.
 };
 
 /// The program's side of a CANopen bus, which sends frames and waits for answers with a timeout. Only one
-/// thread may use it.
+/// thread may use a CanopenBus.
 class CanopenBus {
  public:
   /// The bus waits for each answer for `timeout` s, and sends each request up to `tries` times. Link and
@@ -40,7 +40,7 @@ class CanopenBus {
   [[nodiscard]] const CanopenNode& node(std::size_t i) const { return nodes_[i]; }
   [[nodiscard]] double now() const { return clock_.now(); }
 
-  /// While this returns true, waiting functions return at once with a fault.
+  /// While this function returns true, waiting functions return at once with a fault.
   void set_interrupt(std::function<bool()> interrupt) { interrupt_ = std::move(interrupt); }
 
   [[nodiscard]] CommandOutcome send(const CanFrame& frame) { return link_.write(bytes_of(frame)); }
@@ -55,7 +55,7 @@ class CanopenBus {
   [[nodiscard]] Outcome<SdoTransfer> read(std::size_t i, ObjectAddress object);
   /// Writes an object. An abort by the node is a fault.
   [[nodiscard]] CommandOutcome write(std::size_t i, ObjectAddress object, std::uint32_t value, int size);
-  /// Runs a transfer. An abort by the node is not a fault here.
+  /// Runs a transfer. If the node aborts the transfer, the result is the aborted transfer, not a fault.
   [[nodiscard]] Outcome<SdoTransfer> run(std::size_t i, const SdoTransfer& transfer, ObjectAddress object);
 
   /// Returns a fault that names the node with index `i`.

@@ -12,10 +12,10 @@ namespace flexura {
 /// A frame of classical CAN.
 struct CanFrame {
   std::uint32_t id = 0;   ///< Identifier without flags; for an error frame: the classes of errors.
-  std::uint8_t size = 0;  ///< Bytes in `data`, 0 to 8.
+  std::uint8_t size = 0;  ///< Number of bytes in `data`, 0 to 8.
   std::array<std::uint8_t, 8> data{};  ///< Bytes beyond `size` are 0.
   bool is_extended = false;            ///< Whether the identifier has 29 bits. CANopen has 11.
-  bool is_remote = false;              ///< Whether this requests a frame.
+  bool is_remote = false;              ///< Whether the frame is a request for a frame (remote frame).
   bool is_error = false;               ///< Whether the interface reports an error of the bus.
 
   bool operator==(const CanFrame&) const = default;
@@ -28,7 +28,7 @@ inline constexpr std::size_t can_frame_size = 16;  ///< Size of a SocketCAN fram
 /// Returns the frame in bytes that were read from SocketCAN, or std::nullopt if they are not exactly one
 /// frame.
 [[nodiscard]] std::optional<CanFrame> parse_can_frame(std::string_view bytes);
-/// Returns what an error frame reports, for example "bus off". Source: Linux, linux/can/error.h.
+/// Returns the errors that an error frame reports, for example "bus off". Source: Linux, linux/can/error.h.
 [[nodiscard]] std::string can_error_text(const CanFrame& frame);
 
 /// Appends the `size` lowest bytes of a number, lowest byte first, as far as the frame has space.
@@ -118,7 +118,7 @@ enum class DriveState {
 /// Returns the bits of a statusword that show a state.
 [[nodiscard]] std::uint16_t statusword_of(DriveState state);
 
-/// Bits of a statusword beyond the state.
+/// Bits of a statusword that do not belong to the state.
 namespace status_bit {
 inline constexpr std::uint16_t target_reached = 1U << 10, limit_active = 1U << 11,
                                /// Setpoint acknowledged; in homing mode: homing attained.

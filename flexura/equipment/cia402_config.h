@@ -38,10 +38,10 @@ struct Cia402Config {
   /// Drives make a quick stop by themselves if the program has sent no heartbeat for this time, s; 0: never.
   double host_timeout = 0;
   std::int64_t host_node = 127;  ///< Node number of the program, 1 to 127.
-  double window = 2;         ///< Largest distance from the target at which an axis at rest counts as arrived,
-                             ///< microsteps, >= 0.5.
-  double settling = 1;       ///< Time by which an axis may arrive later than expected, s, > 0.
-  double power_timeout = 3;  ///< Longest wait until the motors are switched on, s, > 0.
+  /// Largest distance from the target at which an axis at rest counts as arrived, microsteps, >= 0.5.
+  double window = 2;
+  double settling = 1;         ///< Time by which an axis may arrive later than expected, s, > 0.
+  double power_timeout = 3;    ///< Longest wait until the motors are switched on, s, > 0.
   double homing_timeout = 60;  ///< Longest duration of homing an axis, s, > 0.
 };
 

@@ -166,7 +166,7 @@ std::optional<Cia402Drive::Problem> Cia402Drive::doubt_about(std::size_t i, doub
         1.2 * axis.config.max_rate * (now - axis.last_time + config_.answer_timeout) + config_.window;
     if (std::abs(position - before) > most)
       return problem(
-          fmt::format("has jumped from {:.0f} to {:.0f} microsteps, which its motor cannot; start the "
+          fmt::format("has jumped from {:.0f} to {:.0f} microsteps, which its motor cannot do; start the "
                       "drives and home them again",
                       before, position),
           true);
@@ -184,7 +184,7 @@ std::optional<Cia402Drive::Problem> Cia402Drive::doubt_about(std::size_t i, doub
   if (now > axis.ramp.end() + config_.settling && now > axis.progress_time + config_.settling)
     return problem(
         fmt::format("has accepted the target {:.0f} microsteps, but stands still at {:.0f}; is the motor "
-                    "connected, and the drive in the mode of its manual for CANopen?",
+                    "connected, and is the drive in the mode that its manual describes for CANopen?",
                     target, position),
         false);
   return std::nullopt;

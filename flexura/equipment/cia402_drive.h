@@ -31,7 +31,7 @@ struct Cia402Identity {
 /// called from several threads. halt() interrupts the other functions.
 class Cia402Drive : public DrivePort {
  public:
-  /// Link and clock must outlive this object. Times of readings are those of the clock. Throws
+  /// Link and clock must outlive this object. Times of readings are on this clock. Throws
   /// std::invalid_argument if the configuration cannot be used.
   Cia402Drive(Link& link, const ClockPort& clock, const Cia402Config& config);
 
@@ -43,8 +43,8 @@ class Cia402Drive : public DrivePort {
   [[nodiscard]] CommandOutcome home();
   /// Switches the motors off. Axes under load may move.
   [[nodiscard]] CommandOutcome release();
-  /// Sends the drives a heartbeat, if Cia402Config::host_timeout is not 0. Commands and readings also send
-  /// one. At least two heartbeats must be sent within `host_timeout`.
+  /// Sends the drives a heartbeat, if Cia402Config::host_timeout is not 0. Commands and readings also send a
+  /// heartbeat. At least two heartbeats must be sent within `host_timeout`.
   void keep_alive();
   /// Returns the identities that start() has read from the drives.
   [[nodiscard]] std::vector<Cia402Identity> identities() const;

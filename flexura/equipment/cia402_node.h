@@ -58,7 +58,7 @@ class Cia402Node {
   void fail(std::uint16_t code, double now);
   void set_defect(Cia402Defect defect, double now);
   /// Restarts the drive as after a loss of power. The drive loses its configuration, and its position is the
-  /// initial one.
+  /// initial position.
   void restart();
 
  private:

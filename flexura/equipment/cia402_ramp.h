@@ -7,13 +7,13 @@ namespace flexura {
 /// Motion of an axis with trapezoidal speed, as a function of time. The caller chooses the unit of positions.
 class Cia402Ramp {
  public:
-  /// Starts at rest at a position.
+  /// Makes an axis at rest at a position.
   explicit Cia402Ramp(double position = 0) : target_(position) {}
 
   /// Sets position and velocity at `now`, s; the axis then keeps its velocity.
   void set(double now, double position, double velocity = 0);
-  /// Moves to `target` from time `now`, s, on, at up to `speed` > 0, with this acceleration and deceleration
-  /// > 0. If the axis cannot stop before the target, it overshoots and returns.
+  /// Starts to move to `target` at time `now`, s, at a speed of at most `speed` > 0, with the given
+  /// acceleration and deceleration > 0. If the axis cannot stop before the target, it overshoots and returns.
   void move(double now, double target, double speed, double acceleration, double deceleration);
   /// Brakes from `now` on.
   void stop(double now, double deceleration);
@@ -40,7 +40,7 @@ class Cia402Ramp {
 
 /// Returns the cruising speed, > 0, with which an axis moves by `distance` in `duration` s and stops there.
 /// The axis starts with `velocity`, positive towards the target, and accelerates and brakes with
-/// `acceleration`. The result is at most `most`; it is `most` if the duration is too short.
+/// `acceleration`. The result is at most `most`, and equals `most` if the duration is too short.
 [[nodiscard]] double cia402_speed(double distance, double velocity, double duration, double acceleration,
                                   double most);
 

@@ -24,8 +24,8 @@ class SdoTransfer {
 
   /// Returns the frame to send.
   [[nodiscard]] const CanFrame& request() const { return request_; }
-  /// Processes any frame of the bus. Returns true if the frame was an answer to this transfer. Then the
-  /// transfer is over, or request() is a new request.
+  /// Processes any frame of the bus. Returns true if the frame was an answer to this transfer. After an
+  /// answer, the transfer is over, or request() is a new request.
   bool take(const CanFrame& frame);
   [[nodiscard]] bool is_over() const { return is_over_; }
   /// Returns the abort code, or 0 for success. If this side aborted the transfer, request() is the abort

@@ -26,8 +26,8 @@ class ServedDevice {
   /// Processes bytes that arrive at time `now`, s, not before the time of the previous call. The bytes are
   /// any part of a stream, or one datagram. Returns the messages that the device sends, in order.
   virtual std::vector<std::string> receive(std::string_view bytes, double now) = 0;
-  /// Returns the messages that the device sends on its own at time `now`, s. Must be called every few
-  /// milliseconds.
+  /// Returns the messages that the device sends on its own at time `now`, s. This function must be called
+  /// every few milliseconds.
   virtual std::vector<std::string> advance(double now) = 0;
 };
 

@@ -16,7 +16,7 @@ class StampGaps {
   explicit StampGaps(double frame_rate) : first_period_(1 / frame_rate) {}
 
   /// Adds the time stamp of the next frame, s. Returns the number of frames lost since the previous frame.
-  /// Returns 0 for the first frame, and for a time stamp that is not later than the previous one.
+  /// Returns 0 for the first frame, and for a time stamp that is not later than the previous time stamp.
   std::int64_t lost_before(double stamp);
 
  private:
@@ -34,8 +34,8 @@ class NumberGaps {
   NumberGaps(std::uint64_t first, std::uint64_t last) : first_(first), end_(last) {}
 
   /// Adds the number of the next frame. Returns the number of frames lost since the previous frame; 0 for the
-  /// first frame. If the number is equal to the previous one, or lies behind it in the cyclic range, the
-  /// camera has restarted its count. Then the result is also 0.
+  /// first frame. If the number equals the previous number, or lies behind the previous number in the cyclic
+  /// range, the camera has restarted its count, and the result is 0 too.
   std::int64_t lost_before(std::uint64_t number);
   /// Extends the range to 64 bits. Called when a frame number exceeds the range.
   void widen() { end_ = UINT64_MAX; }

@@ -58,8 +58,8 @@ const Table<GrblConfig>& fields_of(const GrblConfig*) {
                .unit = Unit::second,
                .range = between(0, 1)})
           .field("most_lag", &GrblConfig::most_lag,
-                 {.meaning =
-                      "If the rest of the previous motion lasts longer than this, a new command cancels it.",
+                 {.meaning = "If the rest of the previous motion lasts longer than this time, a new command "
+                             "cancels the rest.",
                   .unit = Unit::second,
                   .range = between(0, 10)})
           .field(

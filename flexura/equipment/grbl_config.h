@@ -20,7 +20,7 @@ struct GrblConfig {
       128;  ///< Largest number of bytes that are sent before the controller has answered them, 80 to 4096.
   double lead = 0.1;  ///< Delay with which the motors follow a stream of commands, s, 0 to 1.
   double most_lag =
-      0.25;  ///< If the rest of the previous motion is longer than this, it is canceled, s, 0 to 10.
+      0.25;  ///< Longest rest of the previous motion at a new command, s, 0 to 10; a longer rest is canceled.
   double answer_timeout = 0.25;  ///< Longest wait for an answer, s, above 0, at most 10.
   double connect_timeout = 5;    ///< Longest wait for a controller that is starting, s.
   double stop_timeout = 2;       ///< Longest duration of braking, s.

@@ -119,7 +119,8 @@ CommandOutcome GrblDrive::check_axes() {
     if (!is_countable)
       return refuse(
           fmt::format("setting ${} is {:g} steps/mm; expected above 0, at most {:g}, because positions "
-                      "have 3 decimals: the mm need not be real, 100 is a good choice for all axes",
+                      "have 3 decimals: a \"mm\" of the controller need not be a real millimetre, so 100 is "
+                      "a good choice for all axes",
                       100 + axis, per_mm, most_per_mm));
     if (!(rate > 0 && acceleration > 0 && std::isfinite(rate) && std::isfinite(acceleration)))
       return refuse(fmt::format("settings ${} and ${} must be above 0", 110 + axis, 120 + axis));

@@ -160,13 +160,13 @@ Outcome<GrblDrive::Report> GrblDrive::checked_report() {
       is_known_ = path_.can_be_at(now.steps, off_line, now.received);
       path_.rest(now.steps, now.asked);
       if (!is_known_) return refuse(places + ": the position is lost, home it or set its position");
-      return refuse(places + ": it has not executed the motion");
+      return refuse(places + ": the controller has not executed the motion");
     }
     resting = now.state == GrblState::idle ? std::optional(now.steps) : std::nullopt;
   }
   const auto stopped = stop_and_locate(true);
   if (!stopped) return *stopped.fault();
-  return refuse("the motors were not on the way that was commanded; they have been stopped");
+  return refuse("the motors were not on the commanded path; they have been stopped");
 }
 
 CommandOutcome GrblDrive::brake() {

@@ -34,7 +34,7 @@ struct GrblIdentity {
 ///
 /// Targets and readings are motor positions, microsteps. The zero of the controller's positions is unknown,
 /// so home() or set_positions() must be called first. An alarm or a restart of the controller makes the
-/// positions unknown again. Then this drive refuses to move and to read until one of these functions is
+/// positions unknown again. Then this drive refuses to move and to read until home() or set_positions() is
 /// called.
 ///
 /// Functions may be called from several threads. halt() acts immediately, even while a command or homing of
@@ -47,7 +47,8 @@ class GrblDrive : public DrivePort {
   GrblDrive(std::unique_ptr<Link> link, const ClockPort& clock, GrblConfig config);
 
   /// Resets the controller, which also stops its motors, and reads its settings. Fails if the controller does
-  /// not answer, or if a setting is wrong (docs/equipment/grbl.md). Afterwards the positions are unknown.
+  /// not answer, or if a setting is wrong (docs/equipment/grbl.md). After the reset, the positions are
+  /// unknown.
   [[nodiscard]] CommandOutcome connect();
   /// Moves all axes to their limit switches. `positions`: motor positions at the switches, microsteps.
   [[nodiscard]] CommandOutcome home(std::span<const double> positions);

@@ -216,7 +216,7 @@ TEST(GrblDrive, ReportsAMotionThatIsNotExecuted) {
   ASSERT_TRUE(bench.drive->command(Positions{900, 0, 0}, 1));
   EXPECT_EQ(fault_of(bench.drive->read()),
             "refused: board: the motors were commanded to 900, 0, 0 but stand at 0, 0, 0 (steps of the "
-            "controller): it has not executed the motion");
+            "controller): the controller has not executed the motion");
   bench.device.set_ignores_motions(false);
   EXPECT_THAT(bench.drive->read().value().values, ElementsAre(0, 0, 0));
 }

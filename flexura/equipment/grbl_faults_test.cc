@@ -142,7 +142,7 @@ TEST(GrblVanishing, IsReportedAndEnds) {
   EXPECT_FALSE(bench.drive->command(std::vector<double>{0, 0, 0}, 1));
   bench.link->pass(5);
   bench.link->is_silent = false;
-  // The controller has gone on to its last target, which is on the way that was commanded.
+  // The controller has gone on to its last target, which is on the commanded path.
   EXPECT_TRUE(repair(bench));
   EXPECT_EQ(bench.drive->read().value().values, bench.motors());
 }

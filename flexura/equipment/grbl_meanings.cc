@@ -18,7 +18,7 @@ constexpr std::array<Meaning, 52> errors{
      {4, "a negative number where only a positive one is allowed"},
      {5, "homing is not enabled (setting $22)"},
      {6, "a step pulse is shorter than 3 us"},
-     {7, "the stored settings were unreadable, defaults are in force"},
+     {7, "the stored settings were unreadable, so the controller uses default settings"},
      {8, "this $ command needs the state Idle"},
      {9, "locked: an alarm or a jog is active"},
      {10, "soft limits need homing (settings $20 and $22)"},

@@ -14,10 +14,10 @@ struct GrblLimits {
 };
 
 /// Motion of a simulated controller: a queue of straight lines (blocks), with limited acceleration. The axes
-/// do not stop between two blocks if the corner allows a speed. This is the planner of Grbl (gnea/grbl,
-/// planner.c). The speed at corners is described by S. K. Jeon, "Improving Grbl: Cornering Algorithm", 2011.
-/// As in Grbl, the pulses of the next 0.06 s are prepared in advance, and neither a new block nor braking
-/// changes them (stepper.c: 6 segments, 100 per second). Time advances in ticks.
+/// do not stop between two blocks if the corner allows a speed above 0. The algorithm is that of Grbl's
+/// planner (gnea/grbl, planner.c). The speed at corners is described by Jeon, "Improving Grbl: Cornering
+/// Algorithm", 2011. As in Grbl, the pulses of the next 0.06 s are prepared in advance, and neither a new
+/// block nor braking changes them (stepper.c: 6 segments, 100 per second). Time advances in ticks.
 class GrblMotion {
  public:
   static constexpr double tick = 1e-3;              ///< Length of a tick, s.

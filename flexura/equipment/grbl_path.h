@@ -25,8 +25,8 @@ class GrblPath {
 
   /// Sets the path to a position, steps, at which the controller is at rest at time `now`, s.
   void rest(std::vector<std::int64_t> position, double now);
-  /// Sets the path to a position, steps, at which the controller was stopped at time `now`, s. This ends a
-  /// stream of commands.
+  /// Sets the path to a position, steps, at which the controller was stopped at time `now`, s. The function
+  /// ends a stream of commands.
   void stop(std::vector<std::int64_t> position, double now);
   /// Returns the last target, steps.
   [[nodiscard]] const std::vector<std::int64_t>& end() const { return end_; }

@@ -26,8 +26,8 @@ struct GrblAnswer {
 };
 
 /// Communication with a controller: lines and their answers, in order. The number of bytes that are not yet
-/// answered is limited (window). All waits have a timeout. Only one thread may use it at a time, except for
-/// interrupt().
+/// answered is limited (window). All waits have a timeout. Only one thread at a time may call the functions,
+/// except for interrupt().
 class GrblSession {
  public:
   /// `window`: largest number of bytes that are sent but not yet answered. `answer_timeout`: longest wait for
@@ -42,7 +42,7 @@ class GrblSession {
   /// timeout. Returns the error code of the first refused line, or 0.
   Outcome<int> stream(std::span<const std::string> lines);
   /// Requests a new status report. If answers were lost before, this function first calls resynchronize().
-  /// With `is_urgent` it does not, so the result may be an older report.
+  /// With `is_urgent`, this function does not call resynchronize(), so the result may be an older report.
   Outcome<GrblStatus> status(bool is_urgent = false);
   /// Processes messages of the controller for `duration` s.
   CommandOutcome listen(double duration);
@@ -53,8 +53,8 @@ class GrblSession {
   CommandOutcome act(char byte);
   /// Resets the controller and waits for its banner for at most `timeout` s.
   CommandOutcome reset(double timeout);
-  /// Finds out again which answer belongs to which line, after a loss. Waits for the answer to a request
-  /// whose answer is unmistakable.
+  /// After a loss of answers, finds out again which answer belongs to which line. Sends a request whose
+  /// answer cannot be confused with any other answer, and waits for the answer.
   CommandOutcome resynchronize();
   /// Reads what has arrived, without waiting.
   CommandOutcome drain();

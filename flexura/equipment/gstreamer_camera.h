@@ -11,8 +11,8 @@
 
 namespace flexura {
 
-/// Transport of the pictures of an RTSP stream. tcp: within the RTSP connection; no packets are lost, but a
-/// slow network causes delays. udp: in separate packets, which may be lost.
+/// Transport of the pictures of an RTSP stream. `tcp`: within the RTSP connection; no packets are lost, but a
+/// slow network causes delays. `udp`: in separate packets, which may be lost.
 enum class StreamTransport { tcp, udp };
 
 /// Source of a camera's pictures: a GStreamer pipeline.
@@ -38,10 +38,10 @@ const Table<GStreamerConfig>& fields_of(const GStreamerConfig*);
 /// Starts a camera on a pipeline. The frames have the size and the channels of `camera.sensor`, with 8 bits
 /// per value; a stream of another image size is a fault. A thread connects, and reconnects after a loss.
 ///
-/// Frame::time is the stream's time stamp. For an RTSP stream over TCP it is on the camera's clock. For an
-/// RTSP stream over UDP it is on the camera's clock after the camera's first RTCP sender report. Before this
-/// report it is on this computer's monotonic clock. Use ClockedCamera for times on the rig's clock.
-/// Frame::exposure has the value in `camera.sensor`.
+/// Frame::time is the stream's time stamp. For an RTSP stream over TCP, the time is on the camera's clock.
+/// For an RTSP stream over UDP, the time is on the camera's clock after the camera's first RTCP sender
+/// report. Before this report, the time is on this computer's monotonic clock. Use ClockedCamera for times on
+/// the rig's clock. Frame::exposure has the value in `camera.sensor`.
 ///
 /// `clock` must outlive the camera. Returns a fault for a sensor with more than 8 bits, and for every camera
 /// if the program was built without GStreamer.

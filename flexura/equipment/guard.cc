@@ -135,7 +135,8 @@ void Guard::protect(const Link& link, const StopMessages& stop) {
 std::size_t Guard::protect(const LinkAddress& address, const StopMessages& stop) {
   const std::scoped_lock lock(protecting_);
   if (address.kind != LinkAddress::Kind::tcp || !stop.then.empty())
-    throw std::invalid_argument(text(address) + ": a guard needs a TCP address and no later messages");
+    throw std::invalid_argument(
+        text(address) + ": for a device at an address, a guard needs a TCP address and no delayed messages");
   if (links_ == most_links) throw std::invalid_argument(text(address) + too_many());
   GuardMessage message = guard_message(stop, text(address));
   addrinfo hints{};
@@ -155,7 +156,8 @@ std::size_t Guard::protect(const LinkAddress& address, const StopMessages& stop)
 void Guard::renew(std::size_t number, const StopMessages& stop) {
   const std::scoped_lock lock(protecting_);
   if (number >= links_ || protected_[number].descriptor >= 0 || !stop.then.empty())
-    throw std::invalid_argument("a guard renews the messages of a device at an address, without later ones");
+    throw std::invalid_argument(
+        "a guard renews only the messages of a device at an address, and no delayed messages");
   GuardMessage message = guard_message(stop, "guard");
   message.kind = GuardMessage::Kind::renew;
   message.device = static_cast<std::uint8_t>(number);

@@ -18,7 +18,7 @@ namespace flexura {
 struct StopMessages {
   std::vector<std::string> first;  ///< First messages; each is sent by a separate write.
   double delay = 0;                ///< Delay after the first messages, s.
-  std::vector<std::string> then;   ///< Messages that are sent `delay` s after the first ones.
+  std::vector<std::string> then;   ///< Messages that are sent `delay` s after the first messages.
 };
 
 struct GuardMessage;
@@ -63,7 +63,7 @@ class Guard : public Watchdog {
 
   [[nodiscard]] double period() const override { return period_; }
 
-  /// Protects the device at a link from now on: `stop` are the messages that stop it. Throws
+  /// Protects the device at a link from now on: `stop` are the messages that stop the device. Throws
   /// std::invalid_argument if the link has no descriptor, there are too many messages or links, or a message
   /// is too long. Throws std::runtime_error if the second process does not answer.
   void protect(const Link& link, const StopMessages& stop);

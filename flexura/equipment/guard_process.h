@@ -42,7 +42,7 @@ struct GuardMessage {
 enum class GuardAnswer : char { ready = 'r', stopped = 's' };
 
 /// Decides which stop messages are sent at which time. A GuardWatch has neither a clock nor sockets, so that
-/// tests can run it in simulated time. Allocates no memory.
+/// tests can run a GuardWatch in simulated time. Allocates no memory.
 class GuardWatch {
  public:
   /// `period`: longest time between beats while the arm moves, s.
@@ -89,7 +89,7 @@ class GuardWatch {
 };
 
 /// Sends `size` bytes over a link immediately. First discards bytes that a serial line has not sent yet,
-/// because a stop must not wait for commands. Gives up after a short time. Async-signal-safe.
+/// because a stop must not wait for commands. The function gives up after a short time. Async-signal-safe.
 void send_stop(int descriptor, const char* bytes, std::size_t size) noexcept;
 
 /// Main loop of the guarding process. Protects devices until the program sends the message `end` over

@@ -9,14 +9,16 @@
 
 namespace flexura {
 
-/// Several drives, the parts, that together form one drive. The axes of the first part come first, then those
-/// of the second part, and so on.
+/// Several drives, the parts, that together form one drive. The axes of the first part come first, then the
+/// axes of the second part, and so on.
 class JoinedDrive : public DrivePort {
  public:
   /// Order in which the functions of the parts are called.
   enum class Calls {
-    one_by_one,  ///< One after the other, in the thread of the caller.
-    at_once      ///< At the same time, each in a separate thread, so that delays of slow links do not add up.
+    one_by_one,  ///< The parts are called one after the other, in the thread of the caller.
+    /// The parts are called at the same time, each in a separate thread, so that delays of slow links do not
+    /// add up.
+    at_once
   };
 
   /// The parts must outlive this object. Throws std::invalid_argument if there are none or their quantities

@@ -272,7 +272,7 @@ LinkAddress parse_link_address(std::string_view text) {
       if (!baud || !speed_of(*baud)) refuse("no serial line has this speed");
       address.baud = *baud;
     }
-    if (address.place.find('\0') != std::string::npos) refuse("a path has no zero byte");
+    if (address.place.find('\0') != std::string::npos) refuse("a path must not contain a zero byte");
     return address;
   }
   if (text.starts_with("can:")) {
@@ -295,7 +295,7 @@ LinkAddress parse_link_address(std::string_view text) {
   if (host.starts_with('[') && host.ends_with(']')) {
     host = host.substr(1, host.size() - 2);
   } else if (host.find(':') != std::string_view::npos) {
-    refuse("an IPv6 number is in brackets");
+    refuse("an IPv6 address must be in brackets");
   }
   if (host.empty() || host.find_first_of(std::string_view("[]\0", 3)) != std::string_view::npos)
     refuse("the host is missing");

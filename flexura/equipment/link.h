@@ -13,7 +13,7 @@ namespace flexura {
 /// A connection to a device: a serial line, a TCP or UDP socket, or a CAN bus.
 ///
 /// Several threads may use a link: one may read while others write. Bytes of one write are never mixed with
-/// those of another.
+/// the bytes of another write.
 class Link {
  public:
   virtual ~Link() = default;
@@ -23,14 +23,14 @@ class Link {
 
   /// Returns the name for messages, for example "/dev/ttyUSB0".
   [[nodiscard]] virtual const std::string& name() const = 0;
-  /// Sends all bytes. Over UDP they are one datagram; over CAN they must be one frame (cia402_codec.h). Fails
-  /// if the bytes cannot be sent within the link's write timeout.
+  /// Sends all bytes. Over UDP the bytes are one datagram; over CAN the bytes must be one frame
+  /// (cia402_codec.h). Fails if the bytes cannot be sent within the link's write timeout.
   [[nodiscard]] virtual CommandOutcome write(std::string_view bytes) = 0;
   /// Waits until bytes arrive, for at most `timeout` s, >= 0. Returns what has arrived: at most 64 KiB, over
   /// UDP the next datagram, over CAN the next frame. Returns "" if nothing arrived.
   [[nodiscard]] virtual Outcome<std::string> read(double timeout) = 0;
-  /// Returns the open file descriptor, which the link owns; -1 if the link has none. Guard gives a copy of it
-  /// to the process that stops devices when this program crashes.
+  /// Returns the open file descriptor, which the link owns; -1 if the link has none. Guard passes a copy of
+  /// the descriptor to the process that stops devices when this program crashes.
   [[nodiscard]] virtual int descriptor() const { return -1; }
 };
 
@@ -68,7 +68,7 @@ struct SerialPair {
   std::string path;              ///< Path of the other end, for open_link().
   Descriptor kept;               ///< Keeps the other end open while no program uses it.
 };
-/// Returns a pseudoterminal. Throws std::runtime_error if the system has none left.
+/// Returns a pseudoterminal. Throws std::runtime_error if the system has no free pseudoterminal.
 [[nodiscard]] SerialPair open_serial_pair();
 
 }  // namespace flexura

@@ -16,7 +16,7 @@ struct LinkFaults {
   double repeat = 0;     ///< Probability that a message arrives twice.
   double cut = 0;        ///< Probability that the end of a message is lost.
   double damage = 0;     ///< Probability that one byte of a message is changed.
-  double swap = 0;       ///< Probability that a message arrives after the next one.
+  double swap = 0;       ///< Probability that a message arrives after the next message.
   double delay = 0;      ///< Probability that a message is delayed.
   double most_late = 0;  ///< Longest delay, s.
 };

@@ -183,7 +183,7 @@ OnvifClient::Trial OnvifClient::judged(const Request& request, Trial trial) cons
       trial.what = "a login is required: set user and password_file";
     } else if (!fault && trial.authenticate.find("Digest") != std::string::npos) {
       trial.what =
-          "the camera wants an HTTP login only: allow WS-Security (WS-UsernameToken) in its settings";
+          "the camera accepts only an HTTP login: allow WS-Security (WS-UsernameToken) in its settings";
     } else {
       trial.what = "the login is refused: check user, password_file, and that the user may move the head";
     }
@@ -195,7 +195,7 @@ OnvifClient::Trial OnvifClient::judged(const Request& request, Trial trial) cons
     trial.what = fmt::format("HTTP status {}: check address, port and path", trial.status);
   } else if (!is_onvif_answer(trial.answer.soap, std::string(request.name) + "Response")) {
     trial.kind = Trial::Kind::lost;
-    trial.what = "its answer is damaged or none of ONVIF: check address, port and path";
+    trial.what = "its answer is damaged or not an ONVIF answer: check address, port and path";
   }
   return trial;
 }

@@ -38,8 +38,8 @@ class OnvifLogin {
 };
 
 /// Sends requests to an ONVIF camera over one permanent connection, and receives the answers. If the camera
-/// closes the connection, the client opens it again. All waits have a timeout. Only one thread may use it at
-/// a time.
+/// closes the connection, the client opens it again. All waits have a timeout. Only one thread at a time may
+/// use a client.
 class OnvifClient {
  public:
   /// An answer.

@@ -105,8 +105,8 @@ const Table<OnvifZoomConfig>& fields_of(const OnvifZoomConfig*) {
                .range = between(-most_onvif, most_onvif),
                .count = {.min = 2}})
           .field("positions", &OnvifZoomConfig::positions,
-                 {.meaning = "Zoom position at each of the points, ascending. Between the points it is "
-                             "interpolated linearly.",
+                 {.meaning = "Zoom position at each of the points, ascending. Between the points, the zoom "
+                             "position is interpolated linearly.",
                   .range = between(-1e9, 1e9),
                   .default_text = "the points"})
           .field("tolerance", &OnvifZoomConfig::tolerance,

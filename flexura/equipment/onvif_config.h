@@ -38,8 +38,8 @@ struct OnvifTiltConfig : OnvifTurnConfig {};
 struct OnvifZoomConfig {
   /// Zoom positions in the head's unit, ascending; at least 2. The first and the last limit the commands.
   std::vector<double> points = {0, 1};
-  /// Zoom position (HeadState::zoom) at each of the points, ascending. Between the points it is interpolated
-  /// linearly. Default: the points.
+  /// Zoom position (HeadState::zoom) at each of the points, ascending. Between the points, the zoom position
+  /// is interpolated linearly. Default: the points.
   std::optional<std::vector<double>> positions = {};
   double tolerance =
       0.01;  ///< Largest distance from the target at which zooming counts as done, in the head's unit.
@@ -56,9 +56,9 @@ struct OnvifConfig {
   OnvifPanConfig pan;
   OnvifTiltConfig tilt;
   OnvifZoomConfig zoom;
-  std::optional<double> speed = {};  ///< Speed of moves as a fraction of the highest speed; > 0, at most 1.
-                                     ///< Default: the head's setting.
-  double reply_timeout = 2;          ///< Longest wait for the answer of the head, s; > 0, at most 30.
+  /// Speed of moves as a fraction of the highest speed; > 0, at most 1. Default: the head's setting.
+  std::optional<double> speed = {};
+  double reply_timeout = 2;  ///< Longest wait for the answer of the head, s; > 0, at most 30.
   std::int64_t tries = 3;  ///< Number of times that a request is sent before a head counts as lost; 1 to 20.
   /// Time for which a head may rest away from its target, s; > 0. After this time the command is repeated. A
   /// head must also stop within this time after a halt.

@@ -65,7 +65,7 @@ CommandOutcome OnvifHead::find_services() {
   if (!answer) return *answer.fault();
   services_ = parse_onvif_services(answer.value().soap).value_or(OnvifServices{});
   if (services_.ptz.empty())
-    return refusal("the camera has no PTZ service: it has no head, or its port is another");
+    return refusal("the camera has no PTZ service: it has no head, or the port is wrong");
   if (services_.media.empty()) return refusal("the camera has no media service (ver10)");
   return Accepted{};
 }

@@ -10,13 +10,14 @@ namespace flexura {
 
 /// A request or reply of HTTP/1.1, with the parts that ONVIF needs.
 struct HttpMessage {
-  int status = 0;             ///< Status of a reply, such as 200; 0 for a request.
-  std::string method;         ///< Method of a request, such as "POST".
-  std::string target;         ///< Path of a request.
-  std::string authenticate;   ///< Kinds of login that a reply asks for (header WWW-Authenticate).
-  std::string body;           ///< Body, without chunked encoding.
-  bool keeps_open = false;    ///< Whether the connection may carry another message.
-  bool is_delimited = false;  ///< Whether the end of the body is marked, not just the end of the connection.
+  int status = 0;            ///< Status of a reply, such as 200; 0 for a request.
+  std::string method;        ///< Method of a request, such as "POST".
+  std::string target;        ///< Path of a request.
+  std::string authenticate;  ///< Kinds of login that a reply asks for (header WWW-Authenticate).
+  std::string body;          ///< Body, without chunked encoding.
+  bool keeps_open = false;   ///< Whether the connection may carry another message.
+  /// Whether the message marks the end of its body; otherwise the connection's end is the body's end.
+  bool is_delimited = false;
 };
 
 /// Finds messages in a stream of bytes. Messages have a limited size: 16 KiB of headers and 1 MiB of body.

@@ -30,12 +30,13 @@ struct CameraEquipment {
 
 /// How the program determines the motor positions at the start of a run.
 enum class StartPositions {
-  declared,  ///< The arm has its initial shape, and the motors are at the positions that the model has for
-             ///< it.
+  /// The arm has its initial shape, and the motors are at the positions that the model computes for this
+  /// shape.
+  declared,
   /// The axes move to their limit switches, whose positions are known, and then slowly to the initial shape.
   homed,
   /// As `homed`, but tendons that are tighter than in the initial shape are let out first. Finally all
-  /// tendons are pulled in together, which takes up their backlash.
+  /// tendons are pulled in together, which removes their backlash.
   pretensioned,
 };
 

@@ -6,8 +6,8 @@
 
 namespace flexura {
 
-/// The system calls on a video device. Tests replace them by V4l2Fake. Each function returns the result of
-/// the system call, but a negative error number in place of -1.
+/// The system calls on a video device. Tests replace these calls by V4l2Fake. Each function returns the
+/// result of the system call, but a negative error number in place of -1.
 class V4l2Calls {
  public:
   virtual ~V4l2Calls() = default;

@@ -167,12 +167,12 @@ ConnectionEnd V4l2Connection::run() {
 std::string V4l2Connection::set() {
   v4l2_capability capability{};
   if (const int result = device_.ioctl(VIDIOC_QUERYCAP, &capability); result < 0)
-    return fmt::format("it is no video device ({})", v4l2_error(result));
+    return fmt::format("this is no video device ({})", v4l2_error(result));
   const bool has_own = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
   const std::uint32_t can = has_own ? capability.device_caps : capability.capabilities;
   if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0)
-    return "it delivers no pictures: a camera has several devices, so try the device with the next lower "
-           "number";
+    return "the device delivers no pictures: a camera has several devices, so try the device with the "
+           "next lower number";
   if (std::string problem = set_format(); !problem.empty()) return problem;
   set_rate();
   return set_light();
@@ -194,7 +194,7 @@ std::string V4l2Connection::set_format() {
     // The device changes what it does not have.
     if (result < 0 || got.pixelformat != wanted) continue;
     if (got.width != sensor.width || got.height != sensor.height) {
-      sizes = fmt::format(" (it offers {} x {})", got.width, got.height);
+      sizes = fmt::format(" (the camera offers {} x {})", got.width, got.height);
       continue;
     }
     layout_ = {.format = wanted,
@@ -205,7 +205,7 @@ std::string V4l2Connection::set_format() {
     return "";
   }
   return fmt::format(
-      "it has no format with {} x {} pixels for pixels = \"{}\"{}: set sensor.width and "
+      "the camera has no format with {} x {} pixels for pixels = \"{}\"{}: set sensor.width and "
       "sensor.height, or format",
       sensor.width, sensor.height, name_of(sensor.pixels), sizes);
 }
@@ -230,17 +230,17 @@ std::string V4l2Connection::set_control(std::uint32_t id, std::int32_t value, co
   v4l2_control control{};
   control.id = id, control.value = value;
   int result = device_.ioctl(VIDIOC_S_CTRL, &control);
-  if (result < 0) return fmt::format("it refuses {} = {} ({})", name, value, v4l2_error(result));
+  if (result < 0) return fmt::format("the camera refuses {} = {} ({})", name, value, v4l2_error(result));
   result = device_.ioctl(VIDIOC_G_CTRL, &control);
   if (result >= 0 && control.value != value)
-    return fmt::format("it set {} instead of {} = {}: set a value that the camera supports", control.value,
-                       name, value);
+    return fmt::format("the camera set {} instead of {} = {}: set a value that the camera supports",
+                       control.value, name, value);
   return "";
 }
 
 std::string V4l2Connection::set_light() {
   if (config_.exposure) {
-    if (!has(V4L2_CID_EXPOSURE_ABSOLUTE)) return "its exposure cannot be set: remove exposure";
+    if (!has(V4L2_CID_EXPOSURE_ABSOLUTE)) return "the camera's exposure cannot be set: remove exposure";
     if (has(V4L2_CID_EXPOSURE_AUTO)) {
       if (auto problem = set_control(V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL, "exposure_auto");
           !problem.empty())
@@ -253,7 +253,7 @@ std::string V4l2Connection::set_light() {
     exposure_ = units * exposure_unit;
   }
   if (config_.gain) {
-    if (!has(V4L2_CID_GAIN)) return "its gain cannot be set: remove gain";
+    if (!has(V4L2_CID_GAIN)) return "the camera's gain cannot be set: remove gain";
     if (has(V4L2_CID_AUTOGAIN)) {
       if (auto problem = set_control(V4L2_CID_AUTOGAIN, 0, "gain_automatic"); !problem.empty())
         return problem;

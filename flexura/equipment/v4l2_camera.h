@@ -18,7 +18,7 @@ enum class V4l2Format { automatic, grey, yuyv, rgb, mjpeg };
 
 /// A camera of the kernel's interface Video4Linux2, for example a USB camera.
 struct V4l2Config {
-  std::string device = "/dev/video0";  ///< Path; paths under /dev/v4l/by-id do not change.
+  std::string device = "/dev/video0";  ///< Path of the device; paths under /dev/v4l/by-id do not change.
   V4l2Format format = V4l2Format::automatic;
   std::optional<double> exposure =
       {};  ///< Exposure time, s, in steps of 0.1 ms; default: as set in the camera.

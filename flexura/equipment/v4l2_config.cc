@@ -45,7 +45,7 @@ const Table<V4l2HeadConfig>& fields_of(const V4l2HeadConfig*) {
                   .range = above(0)})
           .field("patience", &V4l2HeadConfig::patience,
                  {.meaning = "Longest time for which an axis may fail to approach its target after a "
-                             "command. Then the head reports a fault.",
+                             "command. After this time, the head reports a fault.",
                   .unit = Unit::second,
                   .range = between(0.01, 60)});
   return table;

@@ -44,7 +44,7 @@ Outcome<std::unique_ptr<V4l2Head>> V4l2Head::open(const V4l2HeadConfig& config, 
   for (Axis& axis : head->axes_)
     if (auto fault = head->find(axis)) return *fault;
   if (std::ranges::none_of(head->axes_, &Axis::exists))
-    return head->refused("it has no absolute pan, tilt or zoom: remove the head from the file");
+    return head->refused("the camera has no absolute pan, tilt or zoom: remove the head from the file");
   return head;
 }
 
@@ -62,7 +62,7 @@ Outcome<std::int32_t> V4l2Head::value(const Axis& axis) {
   v4l2_control control{};
   control.id = axis.control;
   if (const int result = device_.ioctl(VIDIOC_G_CTRL, &control); result < 0)
-    return lost(fmt::format("its {} cannot be read: {}", axis.name, v4l2_error(result)));
+    return lost(fmt::format("the camera's {} cannot be read: {}", axis.name, v4l2_error(result)));
   return control.value;
 }
 
@@ -73,7 +73,7 @@ std::optional<PortFault> V4l2Head::set(Axis& axis, std::int32_t value) {
   control.id = axis.control;
   control.value = value;
   if (const int result = device_.ioctl(VIDIOC_S_CTRL, &control); result < 0)
-    return lost(fmt::format("it refuses a {} of {}: {}", axis.name, value, v4l2_error(result)));
+    return lost(fmt::format("the camera refuses a {} of {}: {}", axis.name, value, v4l2_error(result)));
   axis.target = value;
   axis.nearest = std::abs(std::int64_t{before.value()} - value);
   axis.progress = clock_.now();
@@ -87,7 +87,7 @@ CommandOutcome V4l2Head::command(const HeadState& state) {
     const Axis& axis = axes_[i];
     if (!std::isfinite(wanted[i])) return refused(fmt::format("a {} that is not a finite number", axis.name));
     if (!axis.exists && std::abs(wanted[i] - axis.fixed) > 1e-9)
-      return refused(fmt::format("it has no {}: leave it at {:.6g}", axis.name, axis.fixed));
+      return refused(fmt::format("the camera has no {}: leave it at {:.6g}", axis.name, axis.fixed));
   }
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
@@ -120,10 +120,10 @@ std::optional<PortFault> V4l2Head::check(Axis& axis, std::int32_t value, bool* i
   if (distance < axis.nearest) axis.nearest = distance, axis.progress = now;
   if (distance < axis.step) return std::nullopt;
   if (now - axis.progress <= config_.patience) return *is_moving = true, std::nullopt;
-  return refused(
-      fmt::format("its {} is at {} although it accepted a command to {}: check that nothing blocks it "
-                  "and that the camera's firmware moves it",
-                  axis.name, value, *axis.target));
+  return refused(fmt::format(
+      "the camera's {} is at {} although the camera accepted a command to {}: check that nothing blocks it "
+      "and that the camera's firmware moves it",
+      axis.name, value, *axis.target));
 }
 
 Outcome<HeadReading> V4l2Head::read() {

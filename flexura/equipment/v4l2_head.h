@@ -28,9 +28,9 @@ const Table<V4l2HeadConfig>& fields_of(const V4l2HeadConfig*);
 /// coarser. An axis without a control is fixed at 0 (zoom: 1), and commands to move it return a fault.
 ///
 /// The controls report positions but not whether an axis moves. So an axis counts as moving until it reports
-/// its target position. read() returns a fault if an axis does not approach its target for longer than
-/// `patience`, because some cameras accept a move without executing it. Since the device has no stop command,
-/// halt() commands the present position. All functions may be called from several threads.
+/// its target position. The function read() returns a fault if an axis does not approach its target for
+/// longer than `patience`, because some cameras accept a move without executing it. Since the device has no
+/// stop command, halt() commands the present position. All functions may be called from several threads.
 class V4l2Head : public HeadPort {
  public:
   /// Opens the device. Fails if the device cannot be opened or has none of the controls. `clock` must outlive

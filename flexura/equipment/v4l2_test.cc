@@ -100,7 +100,7 @@ TEST(V4l2Camera, SetsExposureAndGain) {
   EXPECT_EQ(fake->control(V4L2_CID_GAIN).value, 9);
   fake->set_control(V4L2_CID_GAIN, {.max = 100, .is_stuck = true});
   const auto stuck = open_v4l2_camera({.gain = 9}, video_camera_config(), clock, fake);
-  EXPECT_NE(next_fault(*stuck.value()).find("it set 0 instead of gain = 9"), std::string::npos);
+  EXPECT_NE(next_fault(*stuck.value()).find("the camera set 0 instead of gain = 9"), std::string::npos);
 }
 
 TEST(V4l2Camera, NamesWhatIsWrong) {
@@ -111,11 +111,11 @@ TEST(V4l2Camera, NamesWhatIsWrong) {
     return next_fault(*opened.value());
   };
   EXPECT_NE(fault_of({.device = "/dev/video9"}, PixelKind::gray).find("No such file"), std::string::npos);
-  EXPECT_NE(fault_of({}, PixelKind::gray).find("it offers 64 x 48"), std::string::npos);
+  EXPECT_NE(fault_of({}, PixelKind::gray).find("the camera offers 64 x 48"), std::string::npos);
   EXPECT_NE(fault_of({}, PixelKind::color).find("pixels = \"color\""), std::string::npos);
   // The real calls, on a file that is no video device.
   const auto opened = open_v4l2_camera({.device = "/dev/null"}, video_camera_config(), clock);
-  EXPECT_NE(next_fault(*opened.value()).find("it is no video device"), std::string::npos);
+  EXPECT_NE(next_fault(*opened.value()).find("this is no video device"), std::string::npos);
 }
 
 TEST(V4l2Picture, ConvertsYuyv) {
@@ -203,7 +203,8 @@ TEST(V4l2Head, ReportsAnAxisThatOnlyAcceptsCommands) {
   clock.time = 1.5;
   const auto reading = opened.value()->read();
   ASSERT_FALSE(reading);
-  EXPECT_NE(text(*reading.fault()).find("head \"front\": /dev/video0: its tilt is at 0"), std::string::npos);
+  EXPECT_NE(text(*reading.fault()).find("head \"front\": /dev/video0: the camera's tilt is at 0"),
+            std::string::npos);
   fake->set_plugged(false);
   EXPECT_EQ(opened.value()->read().fault()->kind, FaultKind::link_lost);
   EXPECT_FALSE(V4l2Head::open({}, "front", clock, fake));

@@ -46,7 +46,7 @@ class VideoServer {
 
   /// Returns the address of a stream, "rtsp://127.0.0.1:PORT/NAME".
   [[nodiscard]] virtual std::string address(std::size_t stream) const = 0;
-  /// Returns whether a program receives the stream. If not, put() has no effect.
+  /// Returns whether a program receives the stream. If no program receives the stream, put() has no effect.
   [[nodiscard]] virtual bool is_watched(std::size_t stream) = 0;
   /// Sends a picture, which must have the size and the channels (1 or 3) of the stream. `time`: time stamp of
   /// the picture on the clock steady_seconds(), not in the future. Time stamps of a stream must increase. May

@@ -28,7 +28,7 @@ struct ViscaResult {
   Kind kind = Kind::lost;
   std::uint64_t number = 0;  ///< Number of an accepted command, for ViscaBus::progress().
   int code = 0;              ///< Error code of a refusal.
-  std::string what = {};     ///< Message if the command was lost.
+  std::string what = {};     ///< Error message if the command was lost.
 };
 
 /// A link that one or more VISCA heads share. A ViscaBus sends packets, repeats packets without an answer,

@@ -160,7 +160,7 @@ struct ViscaRequest {
   };
   Kind kind = Kind::unknown;
   int to = 1;         ///< Address, 1 to 8.
-  int socket = 0;     ///< Command buffer (socket) of a cancel.
+  int socket = 0;     ///< For a cancel: the command buffer (socket).
   int address = 0;    ///< Address in `set_addresses`.
   ViscaPlace place;   ///< For moves: counts. For `drive`: directions -1, 0 or 1 (right and up are 1).
   int pan_speed = 0;  ///< Speed byte of moves.

@@ -143,8 +143,8 @@ const Table<ViscaZoomConfig>& fields_of(const ViscaZoomConfig*) {
                   .range = between(0, most_zoom),
                   .count = {.min = 2}})
           .field("positions", &ViscaZoomConfig::positions,
-                 {.meaning = "Zoom position at each of the counts, ascending. Between the counts it is "
-                             "interpolated linearly.",
+                 {.meaning = "Zoom position at each of the counts, ascending. Between the counts, the zoom "
+                             "position is interpolated linearly.",
                   .range = between(-1e9, 1e9),
                   .default_text = "the counts"})
           .field("tolerance", &ViscaZoomConfig::tolerance,

@@ -49,8 +49,8 @@ struct ViscaTiltConfig : ViscaTurnConfig {
 struct ViscaZoomConfig {
   /// Zoom counts, ascending, 0 to 65535; at least 2. The first and the last count limit the commands.
   std::vector<std::int64_t> counts = {0, 0x4000};
-  /// Zoom position (HeadState::zoom) at each of the counts, ascending. Between the counts it is interpolated
-  /// linearly. Default: the counts.
+  /// Zoom position (HeadState::zoom) at each of the counts, ascending. Between the counts, the zoom position
+  /// is interpolated linearly. Default: the counts.
   std::optional<std::vector<double>> positions = {};
   std::int64_t tolerance = 16;  ///< Largest distance from the target at which zooming counts as done, counts.
 };

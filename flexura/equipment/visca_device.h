@@ -69,7 +69,7 @@ struct ViscaHeadModel {
   Overlap overlap = Overlap::replaces;
   bool reports_acceptance = true, reports_end = true;
   bool obeys = true;          ///< Whether the head executes the moves that it accepts.
-  bool is_on = true;          ///< Whether the head is switched on. If not, it refuses moves.
+  bool is_on = true;          ///< Whether the head is switched on. A head that is switched off refuses moves.
   double reply_delay = 0.01;  ///< Time from a request to the answer, s.
 };
 

@@ -15,8 +15,8 @@ struct ArcMotion {
 };
 
 /// Returns arc_pose() (model/backbone.h) and its derivatives, for a bend in rad and a length in m. This is a
-/// fast version for solvers: it computes only one sine and cosine, and for bends below 0.5 rad neither.
-/// Errors are a few units in the last place of the length.
+/// fast version for solvers: it computes only one sine and one cosine, and no sine or cosine for bends below
+/// 0.5 rad. Errors are a few units in the last place of the length.
 [[nodiscard]] ArcMotion arc_motion(const Eigen::Vector2d& bend, double length);
 
 }  // namespace flexura

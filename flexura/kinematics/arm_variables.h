@@ -18,8 +18,8 @@ class ArmVariables {
     double length;    ///< Length at stretch 1, m.
     double max_bend;  ///< Largest |bend|, rad; may be infinite.
     std::array<double, 2> stretch_limits;
-    Eigen::Index at;  ///< Index of bend_x in x. If bend_y and the stretch are variable, they follow bend_x.
-    bool is_spatial;  ///< Whether bend_y is variable.
+    Eigen::Index at;      ///< Index of bend_x in x; bend_y and stretch, if variable, follow in x.
+    bool is_spatial;      ///< Whether bend_y is variable.
     bool is_stretchable;  ///< Whether the stretch is variable.
     /// Returns the index of the stretch in x.
     [[nodiscard]] Eigen::Index stretch_at() const { return at + (is_spatial ? 2 : 1); }

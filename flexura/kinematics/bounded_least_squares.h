@@ -39,7 +39,8 @@ struct DescentLimits {
   int iterations = 60;  ///< Largest number of iterations.
   double slope = 1e-4;  ///< A point is stationary if |free gradient| <= slope |r|.
   /// If > 0: a point counts as stationary after this number of successive steps that each reduce |r|^2 by
-  /// less than 1 %. Such steps occur if the residuals jump nearby, or if the valley is too narrow.
+  /// less than 1 %. Such steps occur if the residuals are discontinuous nearby, or if the minimum is in a
+  /// long, narrow valley of |r|^2.
   int most_slow = 0;
 };
 
@@ -58,7 +59,7 @@ struct BoundedDescent {
 
   /// Sets `trial` to x plus the step that minimizes |J step + r|^2 + damping |step|^2 within the bounds.
   /// Variables that would violate a bound are fixed at the bound, and the other variables are solved again.
-  /// This is repeated until no bound is violated.
+  /// Fixing and solving are repeated until no bound is violated.
   void try_step(const Bounds& within, const Eigen::VectorXd& x, double damping);
   /// Computes `r`, `J`, `square` and `gradient` at x.
   void linearise(const Eigen::VectorXd& x);

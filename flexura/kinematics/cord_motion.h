@@ -10,9 +10,9 @@
 namespace flexura {
 
 /// Returns a motion between two states of a planar arm. The chord angle of section i changes by
-/// `cord_changes[i]` rad, and the section's stretch changes linearly. Both follow the time profile
-/// `profiles[i]`. `to` is the final state. Throws std::invalid_argument unless there are one change and one
-/// profile per section, and all profiles have equal durations.
+/// `cord_changes[i]` rad, and the section's stretch changes linearly. Angle and stretch of section i follow
+/// the time profile `profiles[i]`. `to` is the final state. Throws std::invalid_argument unless there are one
+/// change and one profile per section, and all profiles have equal durations.
 [[nodiscard]] MotionPtr cord_point_to_point_motion(ArmState from, ArmState to,
                                                    std::vector<double> cord_changes,
                                                    std::vector<Profile> profiles);

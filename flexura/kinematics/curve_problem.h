@@ -38,7 +38,7 @@ class CurveProblem final : public BoundedProblem {
   [[nodiscard]] const Eigen::Vector3d& end() const { return desired_.back(); }
 
  private:
-  /// A section in a state.
+  /// A section in a state of the arm.
   struct Placed {
     Pose X_BS;
     Eigen::Vector2d bend;

@@ -14,7 +14,7 @@ class DrivenVariables {
  public:
   explicit DrivenVariables(const ArmModel& model);
 
-  /// Returns the variables of commands; shaped() returns those of shapes.
+  /// Returns the variables of commands; shaped() returns the variables of shapes.
   [[nodiscard]] const ArmVariables& driven() const { return driven_; }
   [[nodiscard]] const ArmVariables& shaped() const { return shaped_; }
   /// Computes the variables of the shape for the variables of a command. Resizes `shape` if needed. The

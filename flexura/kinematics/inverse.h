@@ -16,7 +16,7 @@ namespace flexura {
 struct TipTarget {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< p_WT, m.
   std::optional<Eigen::Vector3d> direction = {};       ///< Direction of the tip's z axis; any length above 0.
-  std::optional<Eigen::Matrix3d> rotation = {};        ///< R_WT; not together with `direction`.
+  std::optional<Eigen::Matrix3d> rotation = {};  ///< Rotation R_WT of the tip; not together with `direction`.
 };
 
 /// Target curve of the whole backbone: a polyline. The point at a fraction f of the backbone's length
@@ -80,7 +80,8 @@ struct InverseResult {
   Eigen::Vector3d tip;  ///< p_WT of `state`, m.
   /// Distance of the tip from the target, m; for a curve, the largest distance along the arm.
   double position_error = 0.0;
-  /// Angle between the tip's direction or rotation and that of the target, rad; 0 for targets without either.
+  /// Angle between the direction or rotation of the tip and of the target, rad; 0 for targets without
+  /// direction and rotation.
   double angle_error = 0.0;
   double position_tolerance = 0.0;  ///< Tolerance on position_error, m.
   int iterations = 0;               ///< Number of evaluations of the arm and its Jacobian.
@@ -90,11 +91,11 @@ struct InverseResult {
 };
 
 /// Returns a state of `arm` within its limits that reaches the target. If the target is proven to be out of
-/// reach, the outcome is not_reachable, and the state is the nearest one found. If the target's position is
+/// reach, the outcome is not_reachable, and the state is the nearest state found. If the target's position is
 /// out of reach, this state is nearest in position. Throws std::invalid_argument if a target or start is not
-/// finite, or a tolerance is not positive. Also throws it if the start does not have one bend and one stretch
-/// per section. Also throws it for a zero direction, both a direction and a rotation, an invalid rotation
-/// matrix, or a curve without length.
+/// finite, or a tolerance is not positive. Also throws std::invalid_argument if the start does not have one
+/// bend and one stretch per section. Further reasons for this exception are a zero direction, both a
+/// direction and a rotation, an invalid rotation matrix, or a curve without length.
 [[nodiscard]] InverseResult solve_inverse(const Arm& arm, const TipTarget& target,
                                           const InverseConfig& config = {});
 [[nodiscard]] InverseResult solve_inverse(const Arm& arm, const CurveTarget& target,
@@ -117,7 +118,7 @@ struct InverseResult {
 [[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
                                                                const InverseConfig& config = {});
 /// Returns the distinct commands that reach a target. Two commands count as equal if an arm of single-arc
-/// sections would have equal backbones for them.
+/// sections would have equal backbones for these commands.
 [[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const ArmModel& model, const TipTarget& target,
                                                                const InverseConfig& config = {});
 

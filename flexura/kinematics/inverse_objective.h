@@ -32,9 +32,9 @@ struct ObjectiveScale {
 void follow_objective(BoundedDescent& descent, const ObjectiveScale& scale, Eigen::VectorXd& x);
 
 /// Refines the result of follow_objective() by Newton steps on the surface of solutions. The resulting x is a
-/// solution, and its objective is not larger than before. This is needed because follow_objective() uses the
-/// tangents of the surface but not its curvature. follow_objective() therefore converges only linearly, and
-/// its results scatter by about 1e-5 around the minimum.
+/// solution, and its objective is not larger than before. The refinement is needed because follow_objective()
+/// uses the tangents of the surface but not its curvature. Therefore follow_objective() converges only
+/// linearly, and its results scatter by about 1e-5 around the minimum.
 void run_down_to_minimum(BoundedDescent& descent, const ObjectiveScale& scale, Eigen::VectorXd& x);
 
 }  // namespace flexura

@@ -29,12 +29,12 @@ struct Found {
 };
 
 /// Descends from one start after another until a solution is found. Stops after `max_starts` starts,
-/// including those already counted in `found`.
+/// including the starts already counted in `found`.
 void search(BoundedDescent& descent, InverseStarts& starts, int max_starts, Found& found);
 
 /// Moves a result that is not a solution to its local minimum, with at most `iterations` iterations. Gradient
-/// and Gauss-Newton steps alternate. Gradient steps are slow in long valleys, and Gauss-Newton steps are slow
-/// in valleys with a large residual at the minimum.
+/// and Gauss-Newton steps alternate. Gradient steps are slow in long, narrow valleys of the error.
+/// Gauss-Newton steps are slow if the residual at the minimum is large.
 void settle(BoundedDescent& descent, int iterations, Found& found);
 
 /// Returns the nearest state for a target known to be out of reach: the best minimum found from a few starts.

@@ -22,7 +22,7 @@ class BackboneJacobian {
  public:
   /// Twists [v; w] per unit rate of bend_x, bend_y and stretch.
   using Columns = Eigen::Matrix<double, 6, 3>;
-  /// A section in a state.
+  /// A section in a state of the arm.
   struct Part {
     Pose X_WS;               ///< Pose of the section's base frame.
     Eigen::Vector2d bend;    ///< Bend vector, rad.

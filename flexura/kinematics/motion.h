@@ -17,7 +17,8 @@ struct SectionRates {
   double stretch = 0;  ///< Bound on |d stretch/dt|, 1/s.
 };
 
-/// A motion: the arm's state as a function of time within one task. Immutable, so that threads can share it.
+/// A motion: the arm's state as a function of time within one task. A motion is immutable, so that threads
+/// can share it.
 class Motion {
  public:
   virtual ~Motion() = default;
@@ -26,8 +27,8 @@ class Motion {
   Motion& operator=(const Motion&) = delete;
 
   [[nodiscard]] virtual double duration() const = 0;  ///< Returns the duration, s; >= 0.
-  /// Returns the state at `time`, s, in [0, duration()]. Values may be not finite, for example those of a
-  /// user's formula.
+  /// Returns the state at `time`, s, in [0, duration()]. Values may be infinite or NaN, for example those of
+  /// a user's formula.
   [[nodiscard]] virtual ArmState at(double time) const = 0;
   /// Returns bounds on the rates of `section` that hold during all of [start, end], s; std::nullopt if
   /// unknown.
@@ -54,8 +55,8 @@ using MotionPtr = std::shared_ptr<const Motion>;
                                     std::vector<double> phases, double period, double duration);
 
 /// Interpolation between keyframes. `linear`: straight lines. `smooth`: cubic Hermite pieces. At an inner
-/// keyframe, the slope is that of the parabola through the keyframe and its two neighbours. At both ends, the
-/// slope is zero.
+/// keyframe, the slope is the slope of the parabola through the keyframe and its two neighbours. At both
+/// ends, the slope is zero.
 enum class Interpolation { linear, smooth };
 
 /// Returns a motion through `states` at `times`, s. Throws std::invalid_argument unless there are at least
@@ -64,7 +65,7 @@ enum class Interpolation { linear, smooth };
                                         Interpolation interpolation);
 
 /// Returns a motion that is given by a function of time, such as a user's expression, from time 0 to
-/// `duration`, s. The bounds on its rates are unknown.
+/// `duration`, s. The bounds on the rates of this motion are unknown.
 [[nodiscard]] MotionPtr function_motion(double duration, std::function<ArmState(double time)> state_at);
 
 }  // namespace flexura

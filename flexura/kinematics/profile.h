@@ -7,8 +7,8 @@ namespace flexura {
 /// of the duration, and never increases after it.
 class Profile {
  public:
-  /// Returns a profile with a constant rate. This function and the following ones throw std::invalid_argument
-  /// unless the duration, s, is above 0.
+  /// Returns a profile with a constant rate. This function and the following functions throw
+  /// std::invalid_argument unless the duration, s, is above 0.
   [[nodiscard]] static Profile linear(double duration);
   /// Returns the minimum-jerk profile 10 x^3 - 15 x^4 + 6 x^5, with x = t / duration. This profile has zero
   /// rate and acceleration at both ends, and the least integral of squared jerk.

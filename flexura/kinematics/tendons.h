@@ -9,9 +9,10 @@
 #include "flexura/model/drive.h"
 
 // Converts bends to tendon lengths and back (docs/drives.md). Every function throws std::invalid_argument for
-// a tendon that ends at a section that the arm does not have. Also throws it for a state that does not have
-// one bend and one stretch per section. The formulas assume inextensible tendons, and that no tendon is
-// beyond the centre of a bend (curvature times radius below 1).
+// a tendon that ends at a section that the arm does not have. Every function also throws
+// std::invalid_argument for a state that does not have one bend and one stretch per section. The formulas
+// assume inextensible tendons, and that no tendon is beyond the centre of a bend (curvature times radius
+// below 1).
 namespace flexura {
 
 /// Returns the displacement of each tendon, m: the tendon's length along the straight, unstretched arm minus
@@ -38,9 +39,10 @@ struct TendonFit {
 };
 
 /// Returns the state for tendon displacements: bends, and stretches of stretchable sections. The fit is exact
-/// if an exactly fitting state exists. Otherwise the fit is a least-squares fit, section by section from the
-/// base. In a continuous channel, this equals the least-squares fit to all tendons. bend_y of planar arms is
-/// 0. If the tendons do not determine a section, the result is the solution nearest to straight.
+/// if an exactly fitting state exists. If no state fits exactly, the result is a least-squares fit, section
+/// by section from the base. In a continuous channel, this equals the least-squares fit to all tendons.
+/// bend_y of planar arms is 0. If the tendons do not determine a section, the result is the solution nearest
+/// to straight.
 [[nodiscard]] TendonFit fit_state(const Arm& arm, const Drive& drive,
                                   const TendonDisplacements& displacements);
 

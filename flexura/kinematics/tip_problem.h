@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// Part of the tip's pose that the target determines. The value is the number of residuals.
+/// Part of the tip's pose that the target determines. The value of an enumerator is the number of residuals.
 enum class TipRows { position = 3, direction = 5, rotation = 6 };
 
 /// Residuals of the condition that the tip is at the target, as functions of the vector x of ArmVariables.
@@ -17,14 +17,14 @@ enum class TipRows { position = 3, direction = 5, rotation = 6 };
 /// direction has two such rows (about x and y), and a target rotation has three.
 ///
 /// The orientation rows of J in linearise() are the angular velocity, not the derivative of the rotation
-/// vector e. The matrix that converts between them has e as an eigenvector with eigenvalue 1. Hence the
-/// gradient of |e|^2 and the undamped Gauss-Newton step are equal for both. The angular velocity has the
-/// advantage that it has no singular orientation.
+/// vector e. The matrix that converts the angular velocity to this derivative has e as an eigenvector with
+/// eigenvalue 1. Hence the gradient of |e|^2 and the undamped Gauss-Newton step are equal for both. The
+/// angular velocity has the advantage that it has no singular orientation.
 class TipProblem final : public BoundedProblem {
  public:
-  /// `X_BT` is the target pose of the tip in the base's frame. TipRows::position uses only its position;
-  /// TipRows::direction uses its position and z axis. `length` is the scale of distances, m. Tolerances are
-  /// in m and rad.
+  /// `X_BT` is the target pose of the tip in the base's frame. TipRows::position uses only the position in
+  /// `X_BT`, and TipRows::direction uses position and z axis. `length` is the scale of distances, m.
+  /// Tolerances are in m and rad.
   TipProblem(TipRows rows, const ArmVariables& variables, const Pose& X_BT, double length,
              double position_tolerance, double angle_tolerance);
 

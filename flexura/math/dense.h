@@ -54,8 +54,8 @@ class Cholesky {
 };
 
 /// Pivoted Cholesky decomposition A = P^T L D L^T P of a symmetric n x n matrix that is positive semidefinite
-/// up to rounding. Uses the lower triangle. In a solution, unknowns with a zero pivot are zero. The result is
-/// undefined for other matrices.
+/// up to rounding. Uses the lower triangle. In a solution, unknowns with a zero pivot are zero. For matrices
+/// that are not positive semidefinite, the result is undefined.
 class PivotedCholesky {
  public:
   PivotedCholesky() = default;
@@ -84,7 +84,7 @@ class PivotedCholesky {
 /// Returns the minimum-norm least-squares solution: the x of smallest norm that minimizes |A x - b|.
 [[nodiscard]] Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
-/// Returns the Moore-Penrose inverse; for an m x n matrix it is n x m.
+/// Returns the Moore-Penrose inverse; for an m x n matrix the inverse is n x m.
 [[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
 
 /// Returns the rank, computed by QR decomposition with column pivoting. Pivots below `threshold` times the

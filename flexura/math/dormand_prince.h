@@ -19,10 +19,9 @@ struct OdeTolerance {
   int most_steps = 1'000'000;  ///< Largest number of steps in one advance, including rejected steps.
 };
 
-/// Solves dy/dt = f(t, y) by the explicit Runge-Kutta pair of order 5(4) with adaptive steps (J. R. Dormand,
-/// P. J. Prince, "A family of embedded Runge-Kutta formulae", 1980). The step size rule is from E. Hairer, S.
-/// P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", II.4. Allocates nothing after the
-/// constructor.
+/// Solves dy/dt = f(t, y) by the explicit Runge-Kutta pair of order 5(4) with adaptive steps (Dormand,
+/// Prince, "A family of embedded Runge-Kutta formulae", 1980). The step size rule is from Hairer, Norsett,
+/// Wanner, "Solving Ordinary Differential Equations I", II.4. Allocates nothing after the constructor.
 class DormandPrince {
  public:
   /// Makes a solver for `size` components of y.
@@ -33,8 +32,9 @@ class DormandPrince {
 
   /// Result of an advance.
   struct Progress {
-    /// Whether the time `until` was reached. If not, the number of steps reached its limit, the step size
-    /// became too small, or go_on() stopped the advance. Then t and y are those of the last accepted step.
+    /// Whether the time `until` was reached. If `until` was not reached, the number of steps reached its
+    /// limit, the step size became too small, or go_on() stopped the advance. After such an end, t and y have
+    /// the values of the last accepted step.
     bool is_there = false;
     int steps = 0, taken_back = 0;  ///< Numbers of accepted steps, and of steps rejected for their error.
   };

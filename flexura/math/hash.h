@@ -13,7 +13,7 @@ constexpr std::uint64_t hash(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Returns a hash of several numbers. The hash depends on their order.
+/// Returns a hash of several numbers. The hash depends on the order of the numbers.
 template <typename... Rest>
 constexpr std::uint64_t hash(std::uint64_t first, std::uint64_t second, Rest... rest) {
   return hash(hash(first) ^ second, rest...);

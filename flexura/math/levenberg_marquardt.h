@@ -2,7 +2,7 @@
 
 #include <limits>
 
-// The Levenberg-Marquardt method (K. Levenberg 1944, D. W. Marquardt 1963), which all minimizers of the
+// The Levenberg-Marquardt method (Levenberg 1944, Marquardt 1963), which all minimizers of the
 // library share. Each problem defines its unknowns and the computation of a damped step.
 namespace flexura {
 
@@ -18,8 +18,9 @@ struct TriedStep {
 struct Damping {
   double start = 1e-4;  ///< Initial damping.
   double most = 1e12;   ///< Largest damping.
-  double rise = 10;     ///< Factor on the damping after a rejected step. Each further consecutive rejection
-                        ///< multiplies the factor by `growth`.
+  /// Factor on the damping after a rejected step. Each further consecutive rejection multiplies the factor by
+  /// `growth`.
+  double rise = 10;
   double growth = 1;
   /// Function that returns the damping after an accepted step. The parameters of this function are the
   /// previous damping and the ratio of actual to predicted decrease of the cost (-1 if no decrease was

@@ -21,10 +21,10 @@ template <typename Value>
           Value(10.0 / 3 * h * (first - 2 * second + third))};
 }
 
-/// A step of the Magnus expansion (S. Blanes, F. Casas, J. A. Oteo, J. Ros, "The Magnus expansion and some of
-/// its applications", 2009, sec. 5.5.1). Let X(s) be the pose with X' = X hat(x(s)) and X(0) = 1, where x is
-/// a strain. The step computes the twist T with X(h) = exp(T), accurate to the sixth power of h and exact for
-/// a constant x. The input of the step is the moments a of x (magnus_moments).
+/// A step of the Magnus expansion (Blanes, Casas, Oteo, Ros, "The Magnus expansion and some of its
+/// applications", 2009, sec. 5.5.1). Let X(s) be the pose with X' = X hat(x(s)) and X(0) = 1, where x is a
+/// strain. The step computes the twist T with X(h) = exp(T), accurate to the sixth power of h and exact for a
+/// constant x. The input of the step is the moments a of x (magnus_moments).
 class MagnusStep {
  public:
   using Moments = std::array<Vector6d, 3>;
@@ -37,7 +37,7 @@ class MagnusStep {
   [[nodiscard]] const Vector6d& twist() const { return twist_; }
   /// Returns dT/da.
   [[nodiscard]] Slopes slopes() const;
-  /// Returns, for a wrench W, the second derivative F of W . T with respect to a. In any two directions d and
+  /// Returns, for a wrench W, the second derivative F of W^T T with respect to a. In any two directions d and
   /// e the second derivative is the sum of d_i^T F_ij e_j.
   [[nodiscard]] Form form(const Vector6d& W) const;
 

@@ -10,10 +10,11 @@ namespace {
 void check(const ConvexLimits& limits, Eigen::Index size) {
   for (const BallLimit& ball : limits.balls)
     if (ball.at < 0 || ball.at + ball.center.size() > size || !(ball.radius >= 0))
-      throw std::invalid_argument("the size of a ball differs from that of the vector that it limits");
+      throw std::invalid_argument(
+          "the size of a ball differs from the size of the vector that the ball limits");
   for (const BandLimit& band : limits.bands)
     if (band.normal.size() != size)
-      throw std::invalid_argument("the size of a band differs from that of the vector");
+      throw std::invalid_argument("the size of a band differs from the size of the vector");
 }
 
 // Returns by how much a band's product exceeds its limits; negative below the lower one.

@@ -37,9 +37,9 @@ struct NearestPointConfig {
 };
 
 /// Returns the vector within all limits that is nearest to `start`, by alternating projections with Dykstra's
-/// correction (R. L. Dykstra, 1983). If the number of rounds is too small for convergence, the result is
-/// within the limits but may not be the nearest vector. Returns std::nullopt if no vector within the limits
-/// was found. Throws std::invalid_argument for limits whose sizes do not fit `start`.
+/// correction (Dykstra, 1983). If the number of rounds is too small for convergence, the result is within the
+/// limits but may not be the nearest vector. Returns std::nullopt if no vector within the limits was found.
+/// Throws std::invalid_argument for limits whose sizes do not fit `start`.
 [[nodiscard]] std::optional<Eigen::VectorXd> nearest_point(const ConvexLimits& limits,
                                                            const Eigen::VectorXd& start,
                                                            const NearestPointConfig& config = {});

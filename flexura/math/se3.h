@@ -28,13 +28,13 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 /// body twist. Smooth through 0.
 [[nodiscard]] Pose se3_exp(const Vector6d& twist);
 
-/// Exponential X_AB of a twist t, with its first two derivatives, in closed form (J. M. Selig, Geometric
+/// Exponential X_AB of a twist t, with its first two derivatives, in closed form (Selig, Geometric
 /// Fundamentals of Robotics, sec. 4.4). Accurate also for small t.
 struct TwistExponential {
   /// Computes the exponential of a twist, with its first derivative.
   explicit TwistExponential(const Vector6d& given);
 
-  /// Returns, for a wrench W in A, the matrix M with W . (d jacobian(t + h a) / dh) b = a^T M b for all
+  /// Returns, for a wrench W in A, the matrix M with W^T (d jacobian(t + h a) / dh) b = a^T M b for all
   /// twists a and b.
   [[nodiscard]] Matrix6d jacobian_form(const Vector6d& W) const;
 

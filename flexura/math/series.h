@@ -20,7 +20,7 @@ struct BendFunctions {
   double sinc, cosc, sinc_deficit, sinc_slope;
   double cosc_slope;  ///< cosc'(t) / t = (t sin t - 2 (1 - cos t)) / t^4; -1/12 at 0.
 };
-/// Returns all functions at t. The values are bitwise equal to those of the single functions, but the sine
+/// Returns all functions at t. The values are bitwise equal to the values of the single functions, but sine
 /// and cosine are computed only once.
 [[nodiscard]] BendFunctions bend_functions(double t);
 

@@ -5,13 +5,13 @@
 
 namespace flexura {
 
-/// Instruction sets of functions that process several numbers at once. Results are bitwise equal for all of
-/// them.
+/// Instruction sets of functions that process several numbers at once. Results are bitwise equal for all
+/// instruction sets.
 enum class SimdPath {
-  baseline,  ///< Available on every processor of the build's architecture. On x86-64: SSE2, two doubles per
-             ///< instruction.
-  avx2,      ///< Four doubles per instruction.
-  avx512,    ///< Eight doubles per instruction; needs AVX-512 F and BW.
+  /// Available on every processor of the build's architecture. On x86-64: SSE2, two doubles per instruction.
+  baseline,
+  avx2,    ///< Four doubles per instruction.
+  avx512,  ///< Eight doubles per instruction; needs AVX-512 F and BW.
 };
 
 /// Returns "baseline", "avx2" or "avx512".

@@ -11,7 +11,7 @@ namespace flexura {
 [[nodiscard]] Eigen::Matrix3d so3_exp(const Eigen::Vector3d& w);
 
 /// Returns the rotation vector of `rotation`, rad, with norm at most pi. For a half turn, two vectors are
-/// possible. Returns the one whose first nonzero component is positive.
+/// possible. The result is then the vector whose first nonzero component is positive.
 [[nodiscard]] Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation);
 
 /// Returns the shortest rotation from +Z to `direction`, of any length except 0; half a turn about X for -Z.

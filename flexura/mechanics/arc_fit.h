@@ -16,8 +16,8 @@ namespace flexura {
 /// Linear least squares fit of an arm's shape to places along the arm. The fit finds the change of the arm's
 /// variables that moves these places by given displacements, with the least sum of squared errors. An arc
 /// affects the arcs distal of it only by the twist of its end. So the normal equations are eliminated arc by
-/// arc from the tip, and time and memory are linear in the number of arcs. This is the Riccati recursion of
-/// linear-quadratic regulators (A. Bryson, Y. Ho, Applied Optimal Control, 1975, sec. 2.3 and 5.3).
+/// arc from the tip, and time and memory are linear in the number of arcs. The elimination is the Riccati
+/// recursion of linear-quadratic regulators (Bryson, Ho, Applied Optimal Control, 1975, sec. 2.3 and 5.3).
 class ArcFit {
  public:
   /// `places` are places on the arm of `variables`, in the order of their arcs.

@@ -16,9 +16,9 @@
 namespace flexura {
 
 /// Returns the elastic rod of an arm described by a file, in the frame of the arm's base. The rod has the
-/// tendons of `[[arm.tendon]]`. If there are none, it has the tendons of `drive`, and the drive's disks in
-/// sections without disks of their own. Throws std::invalid_argument if a section has no material; other keys
-/// were checked by the file's reader.
+/// tendons of `[[arm.tendon]]`. If there are none, the rod has the tendons of `drive`, and the drive's disks
+/// in sections without disks of their own. Throws std::invalid_argument if a section has no material; other
+/// keys were checked by the file's reader.
 [[nodiscard]] Rod rod_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 /// Returns the rod of an arm without a drive.
 [[nodiscard]] Rod rod_of(const ArmConfig& arm);
@@ -27,10 +27,11 @@ namespace flexura {
 /// Loads that follow the end of their section stay in its frame.
 [[nodiscard]] RodLoads loads_of(const ArmConfig& arm);
 
-/// Returns how far each tendon of a rod is pulled in, m, if its sections are arcs bent and stretched as in
-/// `state`. Simulated arms use this function to convert commanded bends into displacements. The pulled-in
-/// length increases with the bend even if the bend is so large that a tendon would pass the arc's centre.
-/// Real rods cannot bend so far. Throws std::invalid_argument if `state` has another number of sections.
+/// Returns how far each tendon of a rod is pulled in, m, if the rod's sections are arcs, bent and stretched
+/// as in `state`. Simulated arms use this function to convert commanded bends into displacements. The
+/// pulled-in length increases with the bend even if the bend is so large that a tendon would pass the arc's
+/// centre. Real rods cannot bend so far. Throws std::invalid_argument if `state` has another number of
+/// sections.
 [[nodiscard]] TendonDisplacements arc_displacements(const Rod& rod, const ArmState& state);
 /// Returns the derivatives of arc_displacements with respect to the (bend_x, bend_y, stretch) of each
 /// section. There is one row per tendon and 3 columns per section. Throws as arc_displacements.
@@ -44,8 +45,8 @@ namespace flexura {
 inline constexpr std::size_t arcs_of_rod_section = 3;
 
 /// Returns the model of an arm and its drive that tasks use. In this model, a section consists of one or
-/// several arcs (Section::bend_profile). If the arm's model is static or dynamic, shapes are those of the
-/// rod's equilibrium under commands (RodResponse). Throws as RodResponse.
+/// several arcs (Section::bend_profile). If the arm's model is static or dynamic, the shape for a command is
+/// the shape of the rod's equilibrium (RodResponse). Throws as RodResponse.
 [[nodiscard]] ArmModel arm_model_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
 }  // namespace flexura

@@ -13,8 +13,8 @@ struct Complementary {
   enum class Kind { none, at_least_0, free };
 
   /// Solves the problem by principal pivots. Each pivot fixes one variable at 0, or releases it. `held_off`:
-  /// set of the released variables, initially a guess, finally that of the solution. The method always ends
-  /// for positive definite matrices. `rounding`: smaller components of the residual count as 0. Returns
+  /// set of the released variables, initially a guess, finally the set of the solution. The method always
+  /// ends for positive definite matrices. `rounding`: smaller components of the residual count as 0. Returns
   /// std::nullopt if no solution was found or the numbers are not finite.
   [[nodiscard]] std::optional<Eigen::VectorXd> solve(std::vector<char>& held_off, double rounding) const;
 

@@ -24,9 +24,9 @@ struct ContactLaw {
 struct ContactPress {
   double force = 0, by_depth = 0, by_rate = 0;
 };
-/// Returns the normal force of K. H. Hunt and F. R. E. Crossley (1975), linear in the depth: k depth (1 +
-/// damping rate). This force is smooth at first contact, and where it would become attractive. `rate`: rate
-/// of the depth, m/s.
+/// Returns the normal force of Hunt and Crossley (1975), linear in the depth: k depth (1 + damping rate).
+/// This force is smooth at first contact, and where it would become attractive. `rate`: rate of the depth,
+/// m/s.
 [[nodiscard]] ContactPress press(const ContactLaw& law, double depth, double rate);
 
 /// Contact of a body with a ball, whose centre is a point of the rod.

@@ -21,8 +21,8 @@ struct NearestPoint {
 /// An obstacle that a rod can touch: a plane, ball, capsule or box, in the frame of the rod's base.
 class ContactShape {
  public:
-  /// `X_BW`: pose of the obstacle's frame in the base's. Throws std::invalid_argument for numbers that are
-  /// not finite, a size that is not positive, or a normal or rotation of zero norm.
+  /// `X_BW`: pose of the obstacle's frame in the base's frame. Throws std::invalid_argument for numbers that
+  /// are not finite, a size that is not positive, or a normal or rotation of zero norm.
   ContactShape(const ObstacleConfig& obstacle, const Pose& X_BW);
 
   /// Returns the nearest point of the surface; finite for any finite point. If several points are nearest

@@ -19,11 +19,12 @@ namespace flexura {
 /// Settings of the time integration.
 struct RodDynamicsConfig {
   /// Factor by which one step reduces motion that is much faster than the step, from 0 to 1. With 1 there is
-  /// no numerical damping: the step is the implicit midpoint rule. Values near 1 are more accurate. But if
-  /// the steps are longer than the periods of an undamped rod, its energy may grow for values much above 0.1.
+  /// no numerical damping: the step is the implicit midpoint rule. Steps with values near 1 are more
+  /// accurate. But if the steps are longer than the periods of an undamped rod, its energy may grow for
+  /// values much above 0.1.
   double spectral_radius = 0.1;
   /// Tolerance of the equations of a step, rad/s. The energy of the remaining errors of the rates is at most
-  /// that of the whole rod rotating at this rate.
+  /// the energy of the whole rod rotating at this rate.
   double tolerance = 1e-7;
   int most_iterations = 30;
   /// A step that does not converge is repeated with spectral radius 0 and halved repeatedly, until each piece
@@ -41,8 +42,9 @@ struct RodDynamicsConfig {
 /// How a step ended.
 enum class DynamicsEnd {
   converged,
-  bad_input,  ///< The input is invalid: a number is not finite, a tension is below 0, a list has a wrong
-              ///< length, or the step is 0.
+  /// The input is invalid: a number is not finite, a tension is below 0, a list has a wrong length, or the
+  /// step is 0.
+  bad_input,
   did_not_converge,  ///< The step is too long for the loads.
 };
 /// Returns a description for users.
@@ -58,12 +60,12 @@ struct RodState {
   Eigen::VectorXd momentum;      ///< p = M(q) v.
   std::vector<double> tensions;  ///< Tensions of the last step at the base, N.
   /// Friction forces on the tendons with friction, N. The forces along the first tendon come first, from the
-  /// base on, then those along the next tendon. Friction forces are part of the state.
+  /// base on, then the forces along the next tendon. Friction forces are part of the state.
   std::vector<double> friction;
 
   Eigen::VectorXd rate;   ///< dq/dt of the integrator.
   Eigen::VectorXd force;  ///< dp/dt of the integrator.
-  /// Rates in the last steps, newest first. The next step starts its iteration from them.
+  /// Rates in the last steps, newest first. The next step starts its iteration from these rates.
   std::array<Eigen::VectorXd, 3> middle;
   int middles = 0;           ///< Number of valid entries of `middle`.
   double step = 0;           ///< Length of the last step, s.
@@ -72,7 +74,7 @@ struct RodState {
   std::shared_ptr<const RodStepFactor> factor = {};
 };
 
-/// Earlier state of tendon friction, from which the present one is computed.
+/// Earlier state of tendon friction, from which the present state is computed.
 struct RodSlide {
   std::vector<double> friction = {};  ///< Friction forces in the earlier state, as in RodState.
   /// Time since the earlier state, s. In this time tendons are assumed to slide at their present rate.
@@ -84,10 +86,11 @@ struct RodStep {
   DynamicsEnd end = DynamicsEnd::converged;
   std::string problem = {};  ///< Description of bad input.
   int iterations = 0;        ///< Number of linear systems solved.
-  int pieces = 1;            ///< Number of pieces that the step was divided into; 0: it did not converge.
+  int pieces = 1;  ///< Number of pieces that the step was divided into; 0: the step did not converge.
   /// Whether the first attempt failed to converge (RodDynamicsConfig::most_pieces).
   bool is_anew = false;
-  /// Work done against tendon friction, J. Includes energy stored elastically before sliding.
+  /// Work done against tendon friction, J. The work includes energy that is stored elastically before
+  /// sliding.
   double friction_work = 0;
   double friction_loss = 0;  ///< Dissipated part of friction_work, never below 0, J.
 
@@ -104,9 +107,9 @@ struct RodPayload {
 };
 
 /// Number of parameters of each section. The parameters are relative changes, in this order: of the stiffness
-/// against shear, stretch, bend and twist, of the mass per length, and of the damping. The first five are the
-/// same as in EquilibriumSlopes. Damping does not change with the stiffness. Mass does not include point
-/// masses and payloads.
+/// against shear, stretch, bend and twist, of the mass per length, and of the damping. The first five
+/// parameters are the same as in EquilibriumSlopes. Damping does not change with the stiffness. Mass does not
+/// include point masses and payloads.
 inline constexpr Eigen::Index dynamics_parameters = 6;
 
 /// Derivatives of a rod's motion, p = M(q) v and dp/dt = f(q, v, input). All matrices have a row for each
@@ -123,8 +126,9 @@ struct RodDynamicsSlopes {
 
 /// Linearised motion around a state: x' = A x + B u.
 struct RodLinear {
-  /// Derivatives from which the matrices are computed. If tendons are held and very stiff, they are more
-  /// accurate than A, in which the inverse of an ill-conditioned mass matrix multiplies this stiffness.
+  /// Derivatives from which the matrices are computed. If tendons are held and very stiff, these derivatives
+  /// are more accurate than A, in which the inverse of an ill-conditioned mass matrix multiplies this
+  /// stiffness.
   RodDynamicsSlopes slopes;
   Eigen::MatrixXd A, B;            ///< For x = (q, p).
   Eigen::MatrixXd A_rest, B_rest;  ///< For x = (q, v), valid around a rod at rest.
@@ -161,14 +165,15 @@ class RodDynamics {
   RodDynamics& operator=(RodDynamics&&) noexcept;
 
   /// Sets the surroundings, whose wrenches act in addition to tendons and loads; the object keeps a reference
-  /// to them. Null: no surroundings. Throws std::invalid_argument if one of their points is outside the rod.
+  /// to the surroundings. Null: no surroundings. Throws std::invalid_argument if one of their points is
+  /// outside the rod.
   void set_surroundings(const RodSurroundings* surroundings);
 
   /// From now on multiplies each section's undeformed length by a factor > 0 that changes at a rate, 1/s
-  /// (RodChain::stretch_rest). Both lists have one number per section. For a step the factors must be those
-  /// at the time for which the tendons are given (see step()). The state does not change. Kinetic energy and
-  /// momentum include the driven motion. Throws std::invalid_argument for lists of wrong length, factors that
-  /// are not positive, or rates that are not finite.
+  /// (RodChain::stretch_rest). The lists of factors and rates have one number per section. For a step, the
+  /// factors must have their values at the time for which the tendons are given (see step()). The state does
+  /// not change. Kinetic energy and momentum include the driven motion. Throws std::invalid_argument for
+  /// lists of wrong length, factors that are not positive, or rates that are not finite.
   void stretch_rest(std::span<const double> factors, std::span<const double> rates);
 
   /// Returns the unloaded rod at rest.
@@ -177,8 +182,8 @@ class RodDynamics {
   /// were pulled in.
   [[nodiscard]] RodState rest(const Equilibrium& at) const;
   /// Returns the state with modes q and rates v. `tendons` and `loads` act from now on. `slide`: earlier
-  /// state of tendons with friction. Null: they have slid at their present rate for 0.1 s, so friction does
-  /// not hold tendons at rest.
+  /// state of tendons with friction. Null: the tendons are assumed to have slid at their present rate for 0.1
+  /// s, so friction does not hold tendons at rest.
   [[nodiscard]] RodState start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const TendonInput& tendons,
                                const RodLoads& loads, const RodSlide* slide = nullptr);
 
@@ -241,14 +246,14 @@ class RodDynamics {
 
   /// Returns the derivatives at a state. The computing time grows with the square of the number of sections.
   /// `slide` as in start(). Tensions of tendons of given displacement are computed from the tendon lengths.
-  /// This is inaccurate for stiff tendons. So for a rod at rest, RodState::tensions are used instead if they
-  /// fit the lengths.
+  /// For stiff tendons, these computed tensions are inaccurate. So for a rod at rest, RodState::tensions are
+  /// used instead if these tensions fit the lengths.
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
                                          const RodLoads& loads, const RodSlide* slide = nullptr);
-  /// Returns the linearised motion around a state. Cost and errors as slopes(). Also throws
-  /// std::invalid_argument if a tendon has friction, which cannot be linearised.
+  /// Returns the linearised motion around a state. Cost, accuracy and exceptions are those of slopes(). Also
+  /// throws std::invalid_argument if a tendon has friction, which cannot be linearised.
   [[nodiscard]] RodLinear linearize(const RodState& state, const TendonInput& tendons, const RodLoads& loads);
-  /// Returns the derivatives of an undivided step. Throws std::runtime_error if it does not converge.
+  /// Returns the derivatives of an undivided step. Throws std::runtime_error if the step does not converge.
   [[nodiscard]] RodStepSlopes step_slopes(const RodState& state, const TendonInput& tendons,
                                           const RodLoads& loads, double h);
 

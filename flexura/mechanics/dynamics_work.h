@@ -25,7 +25,7 @@ struct RodStepFactor {
 struct RodDynamics::Work {
   Work(Rod rod, const RodDynamicsConfig& given, std::span<const RodPlace> places);
 
-  /// Generalized alpha of first order (K. E. Jansen, C. H. Whiting, G. M. Hulbert 2000).
+  /// Generalized alpha of first order (Jansen, Whiting, Hulbert 2000).
   struct Scheme {
     explicit Scheme(double rho)
         : alpha_f(1 / (1 + rho)),
@@ -37,9 +37,9 @@ struct RodDynamics::Work {
     double alpha_f, alpha_m, gamma;
     /// Coefficient of h times the stage's rate, in the change of state from the step's start to the stage.
     double stage;
-    double memory;  ///< Coefficient of h times RodState::rate, in the change of state from the step's start
-                    ///< to the stage.
-    double error;   ///< Step error in units of h^3 x'''.
+    /// Coefficient of h times RodState::rate, in the change of state from the step's start to the stage.
+    double memory;
+    double error;  ///< Step error in units of h^3 x'''.
   };
 
   /// Returns whether all numbers are so small that energies and velocities are finite.
@@ -49,8 +49,8 @@ struct RodDynamics::Work {
   void set_surroundings(const RodSurroundings* given);
   [[nodiscard]] std::string input_problem(const TendonInput& tendons, const RodLoads& loads) const;
   [[nodiscard]] bool rubs() const { return !layout.rubbing.empty(); }
-  /// Computes momentum, forces, tensions and friction of a state with rates v. The initial friction is the
-  /// one set by hold().
+  /// Computes momentum, forces, tensions and friction of a state with rates v. hold() sets the initial
+  /// friction.
   void set_forces(RodState& state, const Eigen::VectorXd& v, const TendonInput& tendons,
                   const RodLoads& loads);
   /// Sets the friction state of the motion and its derivatives (RodMotion::hold).
@@ -95,11 +95,11 @@ struct RodDynamics::Work {
   /// at q and v if tendons have friction.
   void find_parameter_slopes(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const RodLoads& loads,
                              RodDynamicsSlopes& slopes);
-  /// Returns the derivatives at the present shape, also those with respect to the input. Tensions are those
-  /// of `tendons`.
+  /// Returns the derivatives at the present shape, also those with respect to the input. The tensions are
+  /// those in `tendons`.
   [[nodiscard]] RodDynamicsSlopes slopes_at(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                             const TendonInput& tendons, const RodLoads& loads);
-  /// Solves the stage of a step that starts at `state`; q and v become those of the stage.
+  /// Solves the stage of a step that starts at `state`; q and v become the modes and rates of the stage.
   [[nodiscard]] bool find_stage(const RodState& state, const TendonInput& tendons, const RodLoads& loads,
                                 double h, Eigen::VectorXd& q, Eigen::VectorXd& v);
 

@@ -15,27 +15,28 @@ namespace flexura {
 /// A parameter to estimate. A rod's equations of motion are linear in all parameters except friction.
 struct RodParameter {
   enum class Kind {
-    shear,      ///< Factor on the rod's shear stiffness.
-    stretch,    ///< Factor on the stretch stiffness.
-    bends,      ///< Factor on the bending stiffness in both directions.
-    twist,      ///< Factor on the twist stiffness.
-    stiffness,  ///< Factor on all four stiffnesses. This parameter determines Young's modulus if Poisson's
-                ///< ratio is known.
+    shear,    ///< Factor on the rod's shear stiffness.
+    stretch,  ///< Factor on the stretch stiffness.
+    bends,    ///< Factor on the bending stiffness in both directions.
+    twist,    ///< Factor on the twist stiffness.
+    /// Factor on all four stiffnesses. This parameter determines Young's modulus if Poisson's ratio is known.
+    stiffness,
     /// Damping time, s. The damping is this time times the rod's stiffness, and replaces the rod's own
     /// damping.
     damping,
     mass,      ///< Factor on the mass of the whole rod: inertia and weight.
-    friction,  ///< Friction coefficient of all tendons, or of those that end at the section.
+    friction,  ///< Friction coefficient of all tendons, or of the tendons that end at the section.
   };
   Kind kind = Kind::bends;
-  std::optional<std::size_t> section = {};  ///< Default: all sections together. Must be omitted for a mass.
+  std::optional<std::size_t> section =
+      {};  ///< Default: all sections together. The section must be omitted for a mass.
 };
 
 /// Measurement of a rod at one time.
 struct RodMotionRecordSample {
   double time = 0;    ///< Time, s; later than in the previous sample.
   Eigen::VectorXd q;  ///< Strain modes, as in RodChain.
-  /// dq/dt, in all samples or in none. Missing: computed from differences of q.
+  /// dq/dt, in all samples or in none. If missing, the rates are computed from differences of q.
   std::optional<Eigen::VectorXd> v = {};
   std::vector<double> tensions = {};  ///< Tensions, N, one per tendon, each >= 0; empty: zero.
   /// Covariance of the errors of q, modes x modes, in all samples or in none; replaces
@@ -45,11 +46,12 @@ struct RodMotionRecordSample {
 
 /// Recorded motion of a rod.
 struct RodMotionRecord {
-  std::vector<RodMotionRecordSample>
-      samples;  ///< At least 20. A jump of the tensions is assumed half-way between two samples.
+  /// At least 20. If the tensions jump between two samples, the jump is assumed to be half-way between these
+  /// samples.
+  std::vector<RodMotionRecordSample> samples;
   RodLoads loads = {};
-  /// Standard deviations of the independent errors of each mode and of its rate. Both empty: unknown and
-  /// small.
+  /// Standard deviations of the independent errors of each mode and of its rate. If both lists are empty, the
+  /// errors are unknown and small.
   Eigen::VectorXd q_noise = {}, v_noise = {};
 };
 
@@ -62,7 +64,7 @@ struct IdentificationConfig {
 
 /// Result of the identification.
 struct Identification {
-  /// Estimates, in the order of the parameters. Unobservable ones have the given rod's value.
+  /// Estimates, in the order of the parameters. Unobservable parameters have the given rod's value.
   Eigen::VectorXd values;
   /// Standard deviations of the estimates; infinite for unobservable parameters.
   Eigen::VectorXd sigma;
@@ -79,14 +81,14 @@ struct Identification {
 
 /// Estimates the parameters that fit a record best, by linear least squares of the equations of motion. Each
 /// equation of a mode is multiplied by a smooth bump in time and integrated by parts over a window (weak
-/// form: M. Shinbrot 1957). So no acceleration is needed. With known noise the equations are weighted by
-/// their covariance, propagated from the record to first order. The bias is removed that noise of q and v
-/// causes through the equations' coefficients. With friction, the equations are linearised repeatedly at the
-/// last estimate until the estimate converges (Gauss-Newton method). The iteration starts from the rod's
-/// friction coefficients and, if necessary, from others. If the friction is observable from none of these
-/// starts, the result has the rod's value. Throws
-/// std::invalid_argument for an invalid rod, no parameters, overlapping parameters, or samples that do not
-/// fit the rod. `progress`, if any, follows the iterations.
+/// form: Shinbrot 1957). So the equations contain no accelerations. With known noise the equations are
+/// weighted by their covariance, propagated from the record to first order. Noise of q and v in the
+/// equations' coefficients causes a bias, which is removed. With friction, the equations are linearised
+/// repeatedly at the last estimate until the estimate converges (Gauss-Newton method). The iteration starts
+/// from the rod's friction coefficients and, if necessary, from others. If the friction is observable from
+/// none of these starts, the result has the rod's value. Throws std::invalid_argument for an invalid rod, no
+/// parameters, overlapping parameters, or samples that do not fit the rod. `progress`, if any, follows the
+/// iterations.
 [[nodiscard]] Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
                                       const RodMotionRecord& record, const IdentificationConfig& config = {},
                                       Progress* progress = nullptr);

@@ -54,7 +54,7 @@ void require_record(const RodMotionRecord& record, Index modes) {
     require_covariance(record, k, modes);
     if (!std::isfinite(sample.time) || (k > 0 && !(sample.time > record.samples[k - 1].time)))
       throw std::invalid_argument(
-          fmt::format("sample {}: expected a later time than that of the previous sample", k));
+          fmt::format("sample {}: expected a later time than in the previous sample", k));
   }
   for (const auto& [noise, name] :
        {std::pair{&record.q_noise, "noise of modes"}, std::pair{&record.v_noise, "noise of rates"}}) {

@@ -22,7 +22,7 @@ struct IdentificationEquations {
 
   [[nodiscard]] bool has_noise() const { return !covariances_.empty(); }
   /// Returns the covariance between the noise of columns g and h, equations x equations. Column 0 is `fixed`,
-  /// column i + 1 that of parameter i.
+  /// and column i + 1 belongs to parameter i.
   [[nodiscard]] const Eigen::MatrixXd& noise(Eigen::Index g, Eigen::Index h) const {
     return covariances_[static_cast<std::size_t>(g * (by_parameter.cols() + 1) + h)];
   }

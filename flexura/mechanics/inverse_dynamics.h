@@ -31,12 +31,12 @@ struct TensionFitConfig {
 struct TensionFit {
   std::vector<double> tensions;  ///< Tensions, N, one per tendon, each from 0 to its maximum.
   Eigen::VectorXd desired;       ///< Target generalized forces.
-  Eigen::VectorXd missing;       ///< Remaining forces: target minus those of the tensions.
+  Eigen::VectorXd missing;       ///< Remaining forces: target forces minus the forces of the tensions.
   /// Elastic energies that the rod would store under the target forces, and under the missing forces, J. If
-  /// no tension reduces the missing forces, both are equal.
+  /// no tension reduces the missing forces, both energies are equal.
   double desired_energy = 0, missing_energy = 0;
-  /// Whether the tensions would be unique without bounds. This is the case if the forces of the tendons are
-  /// linearly independent.
+  /// Whether the tensions would be unique without bounds. The tensions are unique if the forces of the
+  /// tendons are linearly independent.
   bool is_determined = false;
 
   /// Returns the missing part of the target, 0 to 1: the square root of missing_energy / desired_energy.
@@ -73,7 +73,7 @@ struct ComputedTorqueGains {
 
 /// Returns the tensions that accelerate a rod at q, v by desired.a + Kd (desired.v - v) + Kp (desired.q - q).
 /// If tensions can apply the needed forces exactly, the error e of each mode obeys e'' + Kd e' + Kp e = 0.
-/// Throws as nearest_tensions, and for gains that are not finite.
+/// Throws the exceptions of nearest_tensions, and std::invalid_argument for gains that are not finite.
 [[nodiscard]] TensionFit computed_torque(RodDynamics& dynamics, const Eigen::VectorXd& q,
                                          const Eigen::VectorXd& v, const RodMotionSample& desired,
                                          const ComputedTorqueGains& gains, const RodLoads& loads,

@@ -45,7 +45,7 @@ struct InverseStaticsConfig {
 /// How a search for tensions ended.
 enum class InverseStaticsEnd {
   reached,         ///< A stable equilibrium meets the target within the tolerance.
-  nearest,         ///< No search reached the target; the result is the nearest one found.
+  nearest,         ///< No search reached the target; the result is the nearest equilibrium found.
   bad_input,       ///< The input is invalid, as described in `problem`.
   no_equilibrium,  ///< No initial equilibrium was found.
 };
@@ -73,12 +73,12 @@ struct InverseStaticsResult {
 
 /// Inverse kinematics under load: finds tensions that bring the equilibrium under `loads` to the target with
 /// least effort. Tensions are between 0 and `most` (N, one per tendon, finite). If no tensions reach the
-/// target, it minimises the sum of squared distances and weighted angles. Reports invalid input in the result
-/// and does not throw. The last solution of `statics` is the result, so that its slopes() are the derivatives
-/// at the result.
+/// target, the function minimises the sum of squared distances and weighted angles. Reports invalid input in
+/// the result and does not throw. The last solution of `statics` is the result, so that its slopes() are the
+/// derivatives at the result.
 ///
 /// Method: Levenberg and Marquardt within bounds (BoundedDescent), then stabilized sequential quadratic
-/// programming (S. J. Wright 1998) along the tensions that reach the target. The latter handles dependent
+/// programming (Wright 1998) along the tensions that reach the target. The second method handles dependent
 /// constraints, which occur where most tendons are slack.
 [[nodiscard]] InverseStaticsResult solve_inverse_statics(RodStatics& statics, const RodTarget& target,
                                                          const RodLoads& loads,

@@ -15,8 +15,8 @@ namespace flexura {
 /// lower bound of each variable is 0. Initially x must be a solution, and `descent` must have r and J at x.
 /// Finally x is also a solution. Returns whether the final x is a minimum of |x|.
 ///
-/// Stabilized sequential quadratic programming (S. J. Wright 1998), which handles dependent constraints, with
-/// M. J. D. Powell's damped updates of the Lagrangian's second derivative. Each step ends with a descent to a
+/// Stabilized sequential quadratic programming (Wright 1998), which handles dependent constraints, with
+/// Powell's damped updates of the Lagrangian's second derivative. Each step ends with a descent to a
 /// solution. The step is accepted if |x| has decreased.
 bool run_down_to_least(BoundedDescent& descent, Eigen::VectorXd& x);
 

@@ -27,23 +27,23 @@ struct RodPlaceRecord {
   double rms = 0;          ///< Root mean square residual of the coordinates, m.
 };
 
-/// Fits the modes to places at each time by least squares, under loads. The strain energies are a prior. So
-/// strains that do not affect the places, such as the twist of a straight rod, remain near their undeformed
-/// values. The prior energy of a bending mode is computed from the bends in the record. The prior energy of
-/// any other mode is a hundredth of this energy. `noise`: standard deviation of each coordinate, m. If
-/// `noise` is 0, it is estimated from the residuals, with a lower bound of 1e-5 of the rod's length. Throws
-/// std::invalid_argument for an invalid rod, numbers that are not finite, fewer than two samples, or wrong
-/// numbers of positions. The exception is also thrown for duplicate places, for places outside the rod, and
-/// for positions far from all shapes of the rod. The number of coordinates must be larger than the number of
-/// modes. `progress`, if any, is called during the fits.
+/// Fits the modes to places at each time by least squares, under loads. The strain energies of the modes are
+/// the prior of the fit. So strains that do not affect the places, such as the twist of a straight rod,
+/// remain near their undeformed values. The prior energy of a bending mode is computed from the bends in the
+/// record. The prior energy of any other mode is a hundredth of this energy. `noise`: standard deviation of
+/// each coordinate, m. If `noise` is 0, the noise is estimated from the residuals, with a lower bound of 1e-5
+/// of the rod's length. Throws std::invalid_argument for an invalid rod, numbers that are not finite, fewer
+/// than two samples, or wrong numbers of positions. The exception is also thrown for duplicate places, for
+/// places outside the rod, and for positions far from all shapes of the rod. The number of coordinates must
+/// be larger than the number of modes. `progress`, if any, is called during the fits.
 [[nodiscard]] RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places,
                                               std::span<const RodPlaceSample> samples, const RodLoads& loads,
                                               double noise = 0, Progress* progress = nullptr);
 
 /// Simulates the rod under the record's tensions from its first sample on. Returns the root mean square
-/// distance of all places at all times, m; infinity if the motion cannot be computed. Throws
-/// std::invalid_argument as record_of_places(), or if the record does not belong to these samples, and the
-/// errors of RodDynamics. `progress`, if any, is called during the simulation.
+/// distance of all places at all times, m; infinity if the motion cannot be computed. Throws the exceptions
+/// of record_of_places() and RodDynamics, and std::invalid_argument if the record does not belong to these
+/// samples. `progress`, if any, is called during the simulation.
 [[nodiscard]] double places_missed(const Rod& rod, std::span<const RodPlace> places,
                                    std::span<const RodPlaceSample> samples, const RodPlaceRecord& record,
                                    Progress* progress = nullptr);

@@ -24,10 +24,10 @@ struct StrainModes {
   int bend = 5;  ///< Number of polynomials for each of the two bending directions.
   int twist = 4;
   /// Whether, in a section with guide disks, each piece between two disks has separate modes (rod_parts.h).
-  /// If false, the modes are those of the whole section, which is inaccurate for strongly bent pieces.
+  /// If false, modes extend over the whole section, which is inaccurate for strongly bent pieces.
   bool by_piece = true;
 
-  /// The rod moves only in its xz plane: it bends about y, without twist or shear along y.
+  /// The rod moves only in its xz plane: the rod bends about y, without twist or shear along y.
   bool planar = false;
 
   /// Returns the numbers of the six strains, in their order.
@@ -66,7 +66,7 @@ struct RodSection {
   /// Empty: straight.
   std::vector<Eigen::Vector3d> rest_curvature = {};
   std::vector<PointMass> masses = {};
-  /// Tendons run straight between guide disks that divide the section into this many equal pieces. 0: they
+  /// Tendons run straight between guide disks that divide the section into this many equal pieces. 0: tendons
   /// run in a continuous channel.
   int disks = 0;
   StrainModes modes = {};
@@ -89,9 +89,9 @@ struct RodSection {
   [[nodiscard]] Vector6d rest_strain_slope_at(double t) const;
 };
 
-/// Path of a tendon from the rod's base through all sections to the end of one, where it is fastened. At
-/// undeformed arc length s m from the base it passes the cross-section at (x(s), y(s)) + r(s) (cos a(s), sin
-/// a(s)). Here r = radius + radius_slope s and a = angle + angle_slope s.
+/// Path of a tendon from the rod's base through all sections to the end of one section, where the tendon is
+/// fastened. At undeformed arc length s m from the base, the tendon passes the cross-section at (x(s), y(s))
+/// + r(s) (cos a(s), sin a(s)). Here r = radius + radius_slope s and a = angle + angle_slope s.
 struct TendonRoute {
   std::size_t section = 0;             ///< Section at whose end the tendon is fastened, 0 at the base.
   double radius = 0;                   ///< m
@@ -101,7 +101,7 @@ struct TendonRoute {
   std::vector<double> x = {}, y = {};  ///< Coefficients of powers of s: m, m/m, ...
   double compliance = 0;               ///< Extension per newton, m/N; >= 0. Used with displacements only.
   /// Coulomb friction coefficient; >= 0. While the tendon is pulled in, its tension after a wrap angle from
-  /// the base is exp(-friction * angle) times the tension at the base (L. Euler, J. Eytelwein).
+  /// the base is exp(-friction * angle) times the tension at the base (Euler, Eytelwein).
   double friction = 0;
 
   /// Offset in the cross-section and its first two derivatives with respect to s; z is 0.
@@ -115,7 +115,7 @@ struct TendonRoute {
 /// A force and a moment at the end of a section.
 struct EndLoad {
   std::size_t section = 0;
-  /// N, in the base's frame; if `following`, in that of the section's end.
+  /// N, in the base's frame; if `following`, in the frame of the section's end.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< Moment, N m, in the same frame as the force.
   /// Whether force and moment turn with the section's end.
@@ -124,7 +124,7 @@ struct EndLoad {
 
 /// A spring that pulls a point of a rod's centerline to a place. The spring force is k d / sqrt(1 + (k |d| /
 /// most)^2), with the vector d from the point to the place. It never exceeds `most`. A constant force is
-/// added.
+/// added to this spring force.
 struct PointSpring {
   std::size_t section = 0;
   double at = 1;                                    ///< Position as part of the section's length, in [0, 1].
@@ -140,14 +140,15 @@ struct RodLoads {
   Eigen::Vector3d per_length =
       Eigen::Vector3d::Zero();  ///< Force along the whole rod, N per metre of undeformed length.
   std::vector<EndLoad> ends = {};
-  /// Springs, each at a place that is a node of the rod. Used in statics only; dynamics uses RodSpring.
+  /// Springs, each at a place that is a node of the rod. These springs act in statics only; dynamics uses
+  /// RodSpring.
   std::vector<PointSpring> springs = {};
 };
 
 /// A rod clamped at its base. All quantities are in the frame of the base. The rod starts at the origin,
 /// along z.
 struct Rod {
-  std::vector<RodSection> sections;  ///< Base first; at least one.
+  std::vector<RodSection> sections;  ///< Sections from the base on; at least one.
   std::vector<TendonRoute> tendons;
 
   /// Returns the undeformed length, m.

@@ -29,12 +29,12 @@ struct RodNode {
 /// frame of the base.
 ///
 /// Proximal elements affect an element only by the twist of its base, and distal elements only by a wrench.
-/// So the modes are eliminated element by element from tip to base, as in the articulated-body algorithm (R.
-/// Featherstone, Rigid Body Dynamics Algorithms, ch. 7).
+/// So the modes are eliminated element by element from tip to base, as in the articulated-body algorithm
+/// (Featherstone, Rigid Body Dynamics Algorithms, ch. 7).
 class RodChain {
  public:
   /// `places` become nodes, so that their poses need no interpolation. Throws std::invalid_argument for an
-  /// invalid rod or a place outside it.
+  /// invalid rod or a place outside the rod.
   explicit RodChain(Rod rod, std::span<const RodPlace> places = {});
 
   [[nodiscard]] const Rod& rod() const { return rod_; }
@@ -70,7 +70,7 @@ class RodChain {
   /// tendons().
   [[nodiscard]] const Eigen::MatrixXd& length_slopes() const { return slopes_; }
   /// Returns the derivative of r with respect to the tensions at the base at the last balance(), size() x
-  /// tendons(). Without friction it equals length_slopes().
+  /// tendons(). Without friction the result equals length_slopes().
   [[nodiscard]] const Eigen::MatrixXd& pull_slopes() const { return pull_slopes_; }
   /// Returns the derivative of r with respect to the share of the loads at the last balance(), size().
   [[nodiscard]] const Eigen::VectorXd& load_slope() const { return load_slope_; }
@@ -81,12 +81,12 @@ class RodChain {
   /// Returns minus the work of all loads at the last balance, J; it is 0 for loads at the base's origin. The
   /// result is a potential energy if has_energy().
   [[nodiscard]] double load_energy(const RodLoads& loads) const;
-  /// Returns whether r is the gradient of an energy under these loads. This is the case without moments,
-  /// follower loads and friction.
+  /// Returns whether r is the gradient of an energy under these loads. An energy exists if there are no
+  /// moments, follower loads and friction.
   [[nodiscard]] bool has_energy(const RodLoads& loads) const;
 
   /// Factors the derivative of r at the last balance plus `share` times the rod's stiffness. Returns false if
-  /// it is singular.
+  /// the factored derivative is singular.
   bool factor(double share = 0);
   /// Returns K dq with the stiffness K, the second derivative of the strain energy; size().
   [[nodiscard]] Eigen::VectorXd stiffness_times(const Eigen::VectorXd& dq) const;
@@ -124,8 +124,8 @@ class RodChain {
   /// size() x size().
   [[nodiscard]] Eigen::MatrixXd friction_form(std::span<const double> tensions) const;
 
-  /// Computes the poses of all nodes at q. balance() computes poses and columns only if loads or chords need
-  /// them.
+  /// Computes the poses of all nodes at q. balance() computes poses and columns only if loads or chords
+  /// depend on poses.
   void place(const Eigen::VectorXd& q);
   /// Computes poses, and columns (the derivatives of node twists with respect to q).
   void place_with_columns(const Eigen::VectorXd& q);

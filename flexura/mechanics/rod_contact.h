@@ -23,7 +23,7 @@ struct RodContactConfig {
   ContactLaw law = {};
   std::vector<ObstacleConfig> obstacles = {};
   Pose X_WB = {};  ///< Pose of the rod's base in the obstacles' frame.
-  /// Radii of the tube around each section, at the section's base and end, m; empty: those of the elastic
+  /// Radii of the tube around each section, at the section's base and end, m; empty: the radii of the elastic
   /// rod.
   std::vector<std::array<double, 2>> radii = {};
   /// Enables self-contact. Self-contact acts between places whose distance along the rod exceeds
@@ -50,7 +50,8 @@ struct ContactForce {
   double depth = 0;         ///< m
   double normal_force = 0;  ///< N
   bool sticks = false;      ///< Whether the slip is at most the law's slip speed.
-  /// Whether the tube's centerline is inside the other body. Then the force may have any direction.
+  /// Whether the tube's centerline is inside the other body. If the centerline is inside, the force may have
+  /// any direction.
   bool is_deep = false;
 };
 
@@ -67,7 +68,7 @@ class RodContact final : public RodSurroundings {
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
             std::span<NodePull> pulls) const override;
   [[nodiscard]] std::span<const RodPlace> points() const override { return places_; }
-  /// Chooses the points that may touch a body. This function and the following ones are not thread-safe.
+  /// Chooses the points that may touch a body. This function and the following functions are not thread-safe.
   void choose(std::span<const NodeMotion> nodes, std::span<const double> lengths,
               std::vector<std::size_t>& chosen) const override;
   void pull_points(std::span<const std::size_t> chosen, std::span<const NodeMotion> points,
@@ -166,9 +167,9 @@ class RodContact final : public RodSurroundings {
   mutable std::vector<Meeting> meetings_;
 };
 
-/// Returns places along a rod, section ends included, with at most `spacing` m between them. At this spacing,
+/// Returns places along a rod, section ends included, at distances of at most `spacing` m. At this spacing,
 /// obstacles of the size `spacing` are detected. Throws std::invalid_argument for a spacing that is not
-/// positive, or that makes more than 10,000 places.
+/// positive, or that results in more than 10,000 places.
 [[nodiscard]] std::vector<RodPlace> contact_places(const Rod& rod, double spacing);
 
 }  // namespace flexura

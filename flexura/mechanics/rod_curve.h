@@ -13,8 +13,8 @@ namespace flexura {
 /// error on a smooth rod is of fourth order in the spacing.
 class RodCurve {
  public:
-  /// Segment from one place to the next, computed from four places x_i: x(u) = sum of weights.row(i) . (1, u,
-  /// u^2, u^3) x_i, u from 0 to 1. The segment is between the second and the third place.
+  /// Segment from one place to the next, computed from four places x_i: x(u) = sum of weights.row(i) (1, u,
+  /// u^2, u^3)^T x_i, u from 0 to 1. The segment is between the second and the third place.
   struct Segment {
     std::array<std::size_t, 4> places{};
     Eigen::Matrix4d weights = Eigen::Matrix4d::Zero();

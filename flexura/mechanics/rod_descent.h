@@ -23,8 +23,8 @@ class RodDescent {
     bool is_held = false;
     double length = 0;      ///< Path length above which a held tendon pulls, m.
     double compliance = 0;  ///< Compliance, m/N; > 0 for a held tendon.
-    /// Additional compliance of a held tendon around the value `tension`, m/N (augmented Lagrangian: M.
-    /// Hestenes, M. J. D. Powell 1969). The final tension is returned as `tension`.
+    /// Additional compliance of a held tendon around the value `tension`, m/N (augmented Lagrangian:
+    /// Hestenes, Powell 1969). The final tension is returned as `tension`.
     double penalty = 0;
   };
 
@@ -36,7 +36,7 @@ class RodDescent {
   bool fall(Eigen::VectorXd& q, std::vector<Held>& tendons);
   /// Whether the second derivative of the energy does not determine stability. One cause is a direction
   /// without stiffness, such as free rotation in a rotationally symmetric world. Another cause is tendons
-  /// that are just taut and hold the rod. This is tested with pushes in several directions.
+  /// that are just taut and hold the rod. Stability is then tested with pushes in several directions.
   [[nodiscard]] bool is_neutral() const { return is_neutral_; }
   /// Number of linear systems solved.
   [[nodiscard]] int iterations() const { return iterations_; }

@@ -10,19 +10,20 @@
 namespace flexura {
 
 /// Drag of a fluid on a rod (docs/mechanics.md, "Drag"). The velocity of the rod relative to the fluid has a
-/// part u across the rod and a part w along it, m/s. The drag per metre of rod, N/m, is opposite to them:
+/// part u across the rod and a part w along it, m/s. The drag per metre of rod, N/m, is opposite to these
+/// velocities:
 ///
 ///     across: density diameter across_coefficient |u| u / 2 + linear_across u
 ///     along:  pi density diameter along_coefficient |w| w / 2 + linear_along w
 struct RodDragConfig {
-  /// Density of the fluid, kg/m^3. This number and the following ones, up to `linear_along`, are >= 0.
+  /// Density of the fluid, kg/m^3. This number and the following numbers, up to `linear_along`, are >= 0.
   double density = 1000;
   double across_coefficient = 1;    ///< Coefficient of form drag; about 1 for a cylinder.
   double along_coefficient = 0.01;  ///< Coefficient of skin friction.
   double linear_across = 0;         ///< Linear drag across the rod, N s/m per metre of rod.
   double linear_along = 0;
   Eigen::Vector3d flow = Eigen::Vector3d::Zero();  ///< Velocity of the fluid in the base's frame, m/s.
-  /// Radii of the tube around each section, at the section's base and end, m; empty: those of the elastic
+  /// Radii of the tube around each section, at the section's base and end, m; empty: the radii of the elastic
   /// rod.
   std::vector<std::array<double, 2>> radii = {};
 };

@@ -31,11 +31,11 @@ class RodElement {
   [[nodiscard]] int size() const { return grid_.size; }
   [[nodiscard]] const RodGrid& grid() const { return grid_; }
   [[nodiscard]] double length() const { return length_; }
-  /// Returns whether tendons run straight between disks (as chords). Then the tendon forces depend on the
+  /// Returns whether tendons run straight between disks (as chords). The forces of such tendons depend on the
   /// poses of the disks, not only on strains.
   [[nodiscard]] bool has_chords() const { return !grid_.disks.empty(); }
 
-  /// Sets the section's undeformed length to this factor times the original one.
+  /// Sets the section's undeformed length to this factor times the original length.
   void stretch_rest(double factor) { grid_.stretch_rest(factor); }
   /// Sets the mode values, `size()`.
   void set_modes(const Eigen::Ref<const Eigen::VectorXd>& q);
@@ -58,7 +58,8 @@ class RodElement {
   [[nodiscard]] bool is_coarse() const;
 
   /// Wrap angle of a tendon between its base and the end of an element. `turned`: wrap angle, rad.
-  /// `direction`: its direction in the frame of the element's end. Both are zero at the base.
+  /// `direction`: direction of the tendon in the frame of the element's end. At the base, angle and direction
+  /// are zero.
   struct Run {
     double turned = 0;
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
@@ -79,8 +80,8 @@ class RodElement {
   void rub_change(std::size_t tendon, double friction, double tension, const Eigen::VectorXd& dq, Run& run,
                   RunChange& change, Eigen::Ref<Eigen::VectorXd> residual_change) const;
   /// Computes residual, tangent, tendon lengths and their derivatives from internal and tendon forces.
-  /// `tension`: tension of each tendon of the rod at its base, N. Sections with chords require the columns.
-  /// The tangent does not include the change of friction with the turning angle.
+  /// `tension`: tension of each tendon of the rod at its base, N. Sections with chords require computed
+  /// columns. The tangent does not include the change of friction with the turning angle.
   void stress(std::span<const double> tension);
   /// Adds `share` times the loads. `beyond`: wrench of all loads on distal sections. Requires the columns.
   void load(const RodLoads& loads, double share, const Vector6d& beyond);
@@ -126,7 +127,7 @@ class RodElement {
   /// Strain energy, J.
   double strain_energy = 0;
   /// Length of the shortest straight piece of a taut tendon between two disks, as a fraction of the
-  /// undeformed length of the rod between these disks. It is 1 if there is no such piece.
+  /// undeformed length of the rod between these disks. The value is 1 if there is no such piece.
   double least_chord = 1;
 
  private:

@@ -21,7 +21,7 @@ struct RodGrid {
   std::array<int, 6> first{}, count{};
   int size = 0;  ///< Number of all modes.
 
-  std::vector<double> t;          ///< Nodes, from 0 to 1.
+  std::vector<double> t;          ///< Positions of the nodes, from 0 to 1.
   std::vector<double> weight;     ///< Quadrature weights of the nodes in an integral over t; the sum is 1.
   Eigen::MatrixXd at_node;        ///< Modes x nodes: value of each mode.
   Eigen::MatrixXd slope_at_node;  ///< Modes x nodes: derivative of each mode with respect to arc length, 1/m.

@@ -46,19 +46,19 @@ struct RodLayout {
   };
 
   /// A piece of a tendon with friction in which the tension is constant: around a node of a channel, or
-  /// between two disks. Friction acts between a piece and the one before it.
+  /// between two disks. Friction acts between a piece and the previous piece.
   struct Piece {
     std::size_t section = 0;
     std::size_t at = 0;  ///< Node of the section, or number of the chord between its disks.
     double run = 0;      ///< Length of rod that the piece represents, m.
-    /// Length of rod between the middles of this piece and the previous one, m; 0 for the first piece.
+    /// Length of rod between the middles of this piece and of the previous piece, m; 0 for the first piece.
     double held = 0;
   };
   /// A tendon with friction.
   struct Rubbing {
     std::size_t tendon = 0;
     double friction = 0;
-    std::size_t first = 0;           ///< Index of its first piece among those of all tendons with friction.
+    std::size_t first = 0;  ///< Index of the tendon's first piece among all pieces of tendons with friction.
     std::vector<Piece> pieces = {};  ///< Pieces, in the order from base to end.
   };
 
@@ -66,7 +66,7 @@ struct RodLayout {
 
   /// The following functions return the index of the element that contains a place, and the index among all
   /// nodes of the node at a place. Both functions throw std::invalid_argument for a place outside the rod.
-  /// node_of() also throws it if no node is at the place.
+  /// node_of() also throws std::invalid_argument if no node is at the place.
   [[nodiscard]] std::size_t element_of(const RodPlace& place) const;
   [[nodiscard]] std::size_t node_of(const RodPlace& place) const;
 

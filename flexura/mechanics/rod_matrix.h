@@ -16,7 +16,7 @@ namespace flexura {
 /// matrix is the sum over the nodes of A^T H A, plus a block for each section. A is the derivative of a
 /// node's twist with respect to the modes, and H a symmetric 6 x 6 matrix. Linear systems are solved at a
 /// cost linear in the number of sections. Each section's modes are eliminated from tip to base, which leaves
-/// a 6 x 6 inertia for the proximal sections (R. Featherstone's articulated bodies). Allocates only in the
+/// a 6 x 6 inertia for the proximal sections (Featherstone's articulated bodies). Allocates only in the
 /// constructor.
 class RodMatrix {
  public:
@@ -31,8 +31,8 @@ class RodMatrix {
   struct Factors {
     double damping = 0, stiffness = 0;
   };
-  /// Assembles and factors the matrix. Returns false if it is not positive definite. `tensions`: tensions of
-  /// the tendons in channels, N; null: no tendon stiffness.
+  /// Assembles and factors the matrix. Returns false if the matrix is not positive definite. `tensions`:
+  /// tensions of the tendons in channels, N; null: no tendon stiffness.
   [[nodiscard]] bool factor(const RodMotion<double>& motion, const Factors& factors, const double* tensions,
                             bool is_surrounded);
   /// Returns whether all points that have wrenches now also had wrenches when the matrix was factored.
@@ -86,7 +86,7 @@ class RodMatrix {
   std::vector<Pulled> pulled_;
   std::vector<double> point_columns_;
   // Coupled points: the matrix has rows_^T rows_ in addition to the sections' part, and answers_ is its
-  // solution for rows_^T (M. A. Woodbury).
+  // solution for rows_^T (Woodbury).
   std::vector<PointTie> ties_;
   Eigen::MatrixXd rows_, answers_;
   Eigen::LLT<Eigen::MatrixXd> tied_;

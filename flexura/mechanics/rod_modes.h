@@ -10,7 +10,7 @@ namespace flexura {
 /// Natural modes of a rod around an equilibrium.
 struct RodModes {
   /// Eigenvalues of A in x' = A x with x = (q, v), 1/s, sorted by absolute value. In a conjugate pair, the
-  /// one with negative imaginary part is first.
+  /// eigenvalue with negative imaginary part is first.
   Eigen::VectorXcd eigenvalues;
   /// Frequency |eigenvalue| / (2 pi), Hz, and damping ratio -(real part) / |eigenvalue| of each conjugate
   /// pair, in the order of the eigenvalues. Overdamped modes have no pair and are omitted.

@@ -31,16 +31,16 @@ class RodMotion {
   /// Computes poses and velocities of the nodes.
   void place(const S* q, const S* v);
   /// Declares that the slopes of q and v in the next calls of place() are 0 outside the modes of sections
-  /// `first` to `last`. `keeps_values`: also declares that values, tensions and loads are those of the last
-  /// calls of place() and pull(), and only slopes differ. Then results that depend only on other sections are
-  /// not recomputed.
+  /// `first` to `last`. `keeps_values`: also declares that values, tensions and loads have not changed since
+  /// the last calls of place() and pull(), and only slopes differ. Results that depend only on other sections
+  /// are then reused.
   void vary(std::size_t first, std::size_t last, bool keeps_values) {
     first_varied_ = first, last_varied_ = last, keeps_values_ = keeps_values;
   }
   /// If true, pull() reuses the last wrenches of the surroundings. Shape and rates must not have changed, but
   /// slopes may.
   void keep_surroundings(bool keeps) { keeps_surroundings_ = keeps; }
-  /// Sets the earlier friction state. `before`: friction force between each piece and the previous one, N,
+  /// Sets the earlier friction state. `before`: friction force between each piece and the previous piece, N,
   /// for all pieces (RodLayout::pieces), by reference. Null: no friction. `time`: time since the earlier
   /// state, s, in which tendons are assumed to have slid at the present rate.
   void hold(const double* before, double time) {
@@ -105,7 +105,7 @@ class RodMotion {
   /// pull().
   void find_grip_slopes(std::size_t tendon, double tension, double* slopes);
   /// Returns for each piece the friction force at its junction with the previous piece, N. The force is the
-  /// tension of the previous piece minus that of this piece. Call after pull().
+  /// tension of the previous piece minus the tension of this piece. Call after pull().
   [[nodiscard]] const std::vector<S>& frictions() const { return friction_; }
   /// Returns for each piece the sliding speed towards the base at its junction with the previous piece, m/s.
   /// Call after pull().

@@ -11,13 +11,13 @@
 
 namespace flexura {
 
-/// Places of a rod between its nodes. The motion of a place is computed exactly, as that of the end of a
-/// partial interval. The places belong to a RodLayout, and are evaluated only if a wrench may act there.
+/// Places of a rod between its nodes. The motion of a place is computed exactly, as the motion of the end of
+/// a partial interval. The places belong to a RodLayout, and are evaluated only if a wrench may act there.
 struct RodPoints {
   struct Point {
     std::size_t section = 0;   ///< Index of the element that contains the place.
     std::size_t interval = 0;  ///< Index of the interval in this element.
-    /// Index among all nodes of the interval's beginning, or of the point itself if it is a node.
+    /// Index among all nodes of the interval's beginning, or of the point itself if the point is a node.
     std::size_t node = 0;
     double part = 0;  ///< Position in the interval, as a fraction of the undeformed arc length.
     bool is_node = false;

@@ -29,9 +29,9 @@ class RodResponse : public ArmResponse {
   /// `driven` has one arc for each number in the bend profiles of its sections. With a drive, commands
   /// displace the drive's tendons, in addition to the displacements of the pretension. Without a drive,
   /// commands displace the rod's tendons. Throws std::invalid_argument for wrong numbers of sections or
-  /// tendons, or an invalid rod. Also throws it if there is no equilibrium under the pretension, or none
-  /// under weight and loads without a command. `swings`: whether the rod has inertia, so that swing() returns
-  /// modes. Then the rod must have a mass.
+  /// tendons, or an invalid rod. Also throws std::invalid_argument if there is no equilibrium under the
+  /// pretension, or none under weight and loads without a command. `swings`: whether the rod has inertia, so
+  /// that swing() returns modes. For such modes the rod must have a mass.
   RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std::optional<Drive> drive,
               bool swings = false);
   ~RodResponse() override;

@@ -28,7 +28,7 @@ struct NodeMotion {
 };
 
 /// Wrench [f; m] on a node about the base's origin. `by_pose`: derivative with respect to a small
-/// displacement twist of the node. `by_twist`: derivative with respect to its velocity twist.
+/// displacement twist of the node. `by_twist`: derivative with respect to the node's velocity twist.
 struct NodePull {
   Vector6d wrench = Vector6d::Zero();
   Matrix6d by_pose = Matrix6d::Zero();
@@ -36,8 +36,9 @@ struct NodePull {
   /// Whether wrench and derivatives are 0.
   bool is_idle = false;
   /// Friction and geometry may cause negative eigenvalues of the symmetric parts of -by_pose and -by_twist.
-  /// Then the matrix of a step may not be positive definite. If `is_held`, this matrix uses the semidefinite
-  /// `stiffness` and `damping` instead. The solution is the same, but needs more iterations.
+  /// With such eigenvalues, the matrix of a step may not be positive definite. If `is_held`, this matrix uses
+  /// the semidefinite `stiffness` and `damping` instead. With `is_held`, the solution of a step is the same,
+  /// but needs more iterations.
   bool is_held = false;
   Matrix6d stiffness = Matrix6d::Zero();
   Matrix6d damping = Matrix6d::Zero();
@@ -80,20 +81,20 @@ class RodSurroundings {
   virtual ~RodSurroundings() = default;
   /// Computes wrenches at all nodes, from the base on. The last node of a section and the first node of the
   /// next section are at the same place, but are separate nodes. `run`: length of rod that each node
-  /// represents in an integral along the rod, m. Must set all elements of `pulls`. If steps must not allocate
-  /// memory, this function must not either.
+  /// represents in an integral along the rod, m. The function must set all elements of `pulls`. If steps must
+  /// not allocate memory, this function must not either.
   virtual void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
                     std::span<NodePull> pulls) const = 0;
 
-  /// Returns the places where wrenches may act in addition to those at nodes. A place may be at a node. The
-  /// places are constant.
+  /// Returns the places where wrenches may act in addition to the wrenches at nodes. A place may be at a
+  /// node. The places are constant.
   [[nodiscard]] virtual std::span<const RodPlace> points() const { return {}; }
   /// Appends to `chosen`, in increasing order, the indices of the points to evaluate for these node motions.
-  /// `lengths`: upper bounds of the rod's lengths between nodes, m, from base to tip. Other points have no
-  /// wrench.
+  /// `lengths`: upper bounds of the rod's lengths between nodes, m, from base to tip. Points that are not
+  /// chosen have no wrench.
   virtual void choose(std::span<const NodeMotion> /*nodes*/, std::span<const double> /*lengths*/,
                       std::vector<std::size_t>& /*chosen*/) const {}
-  /// Computes wrenches at the chosen points. Must set all elements of `pulls`.
+  /// Computes wrenches at the chosen points. The function must set all elements of `pulls`.
   virtual void pull_points(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                            std::span<NodePull> /*pulls*/) const {}
   /// If wrenches at several points are coupled, appends all derivatives of these wrenches, including those

@@ -16,24 +16,24 @@ namespace flexura {
 /// Input of a rod's tendons. Each list has one number per tendon, or is empty.
 struct TendonInput {
   std::vector<double> tensions = {};  ///< Tensions at the base, N; >= 0.
-  /// Length of each tendon pulled in at the base, m, from where it is just taut on the undeformed rod. A
-  /// tendon is slack if more of it is let out than the rod takes up.
+  /// Length of each tendon pulled in at the base, m, from the length at which the tendon is just taut on the
+  /// undeformed rod. A tendon is slack if more of it is let out than the rod takes up.
   std::vector<double> displacements = {};
 };
 
 /// How a search for an equilibrium ended.
 enum class StaticsEnd {
   converged,
-  bad_input,  ///< The input is invalid: a number is not finite, a tension is below 0, or a list has a wrong
-              ///< length.
+  /// The input is invalid: a number is not finite, a tension is below 0, or a list has a wrong length.
+  bad_input,
   /// No equilibrium: the load path diverged before full load, or the rod would be compressed to a negative
   /// length.
   no_equilibrium,
   /// The tendons pull two guide disks together. The rod buckles between the disks, and only their contact,
   /// which is not modelled, could hold it.
   disks_meet,
-  out_of_steps,  ///< Within the limit on the number of steps, neither an equilibrium nor the end of the load
-                 ///< path was found.
+  /// Within the limit on the number of steps, neither an equilibrium nor the end of the load path was found.
+  out_of_steps,
 };
 /// Returns a description for users.
 [[nodiscard]] const char* words(StaticsEnd end);
@@ -85,12 +85,12 @@ struct EquilibriumSlopes {
       q_by_parameters;  ///< Derivatives of q with respect to these parameters, size() x (5 sections).
 };
 
-/// Solves rods for equilibrium: minima of their energy in reduced strains (F. Boyer, F. Renda et al.,
-/// geometric variable strain). Newton's method follows the load path from zero load. If the path ends before
-/// full load, the rod moves from its last stable shape to a minimum of the energy (RodDescent).
+/// Solves rods for equilibrium: minima of their energy in reduced strains (Boyer, Renda et al., geometric
+/// variable strain). Newton's method follows the load path from zero load. If the path ends before full load,
+/// the rod moves from its last stable shape to a minimum of the energy (RodDescent).
 class RodStatics {
  public:
-  /// Parameters and exceptions as in RodChain.
+  /// Parameters and exceptions are as for RodChain.
   explicit RodStatics(Rod rod, std::span<const RodPlace> places = {});
 
   /// Sets length factors as RodChain::stretch_rest, from the next solution on. Displacements still refer to
@@ -98,19 +98,20 @@ class RodStatics {
   void stretch_rest(std::span<const double> factors);
   /// Solves from the undeformed rod.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads);
-  /// Solves from a nearby equilibrium, or from the undeformed rod if that does not converge directly.
+  /// Solves from a nearby equilibrium, or from the undeformed rod if the solution from `near` does not
+  /// converge directly.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads, const Equilibrium& near);
   /// Returns the equilibrium that a rod with the shape of `near` reaches. If the nearby equilibrium is
-  /// stable, it is the result. Otherwise the result is the equilibrium at the end of the descent from `near`.
-  /// Starts from the undeformed rod if `near` did not converge. Returns an unstable equilibrium only if no
-  /// descent from it found a stable one.
+  /// stable, the result is this equilibrium. Otherwise the result is the equilibrium at the end of the
+  /// descent from `near`. Starts from the undeformed rod if `near` did not converge. Returns an unstable
+  /// equilibrium only if no descent from there found a stable equilibrium.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads,
                                    const Equilibrium& near);
-  /// Like settle() with the undeformed rod as start.
+  /// Does the same as settle(), with the undeformed rod as start.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads);
 
-  /// Treatment of slack tendons in slopes(). `hangs`: they have no effect. `is_taut`: they are just taut and
-  /// held, and can also push.
+  /// Treatment of slack tendons in slopes(). `hangs`: slack tendons have no effect. `is_taut`: slack tendons
+  /// count as just taut and held, and can also push.
   enum class Slack { hangs, is_taut };
   /// Returns the derivatives at the last solution. Throws std::logic_error if the last solution did not
   /// converge.

@@ -17,8 +17,8 @@ class Surroundings final : public RodSurroundings {
   /// Not thread-safe.
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
             std::span<NodePull> pulls) const override;
-  /// Returns the points of the only surroundings that have points between nodes. The following functions use
-  /// the same surroundings.
+  /// Returns the points of the only surroundings that have points between nodes. The following functions
+  /// refer only to these surroundings.
   [[nodiscard]] std::span<const RodPlace> points() const override;
   void choose(std::span<const NodeMotion> nodes, std::span<const double> lengths,
               std::vector<std::size_t>& chosen) const override;

@@ -15,8 +15,9 @@ namespace flexura {
 /// shape has one bend and one stretch per arc. A section consists of one or more arcs.
 ///
 /// Without an ArmResponse, each arc has its share of the section's bend (Section::bend_profile) and the
-/// section's stretch. Both conversions are then linear. With an ArmResponse, for example of an elastic rod,
-/// the response computes the shape. The numbers of the profile are then factors on the arcs' computed bends.
+/// section's stretch. The conversions between command and shape are then linear. With an ArmResponse, for
+/// example of an elastic rod, the response computes the shape. The numbers of the profile are then factors on
+/// the arcs' computed bends.
 class Actuation {
  public:
   /// Identity for any number of sections: the shape equals the command. sections() is 0.

@@ -64,7 +64,7 @@ struct Arm {
   Pose X_WB = default_base_pose();  ///< Pose of the base frame in W, position in m.
   std::vector<Section> sections;    ///< Sections from base to tip; at least one.
   /// For planar arms: approximate angle of the base's tangent from +X, rad. Angles that differ by full turns
-  /// describe the same tangent; the one nearest to this value is used. Thus 270 degrees in a file does not
+  /// describe the same tangent; the angle nearest to this value is used. Thus 270 degrees in a file does not
   /// become -90 degrees. Chord angles are computed from the base's tangent.
   double near_tangent = 0;
 

@@ -54,7 +54,7 @@ struct ArmConfig {
   std::vector<TendonRouteConfig>
       tendon;  ///< Routes of tendons. Empty: the tendons of the drive, if there is a drive.
   std::vector<LoadConfig> load;
-  /// Integration step of a dynamic arm, s. This field and the following ones are for dynamic arms.
+  /// Integration step of a dynamic arm, s. This field and the following fields are for dynamic arms.
   double time_step = 0.005;
   double spectral_radius = 0.1;  ///< Spectral radius of the time integration at high frequencies, 0 to 1.
   /// Contact with obstacles and with itself; missing: no contact forces.

@@ -12,7 +12,7 @@ namespace flexura {
 /// shapes. If every section is one arc, driven() and shaped() are the same arm.
 class ArmModel {
  public:
-  /// Uses Actuation(driven). Throws the exceptions of that constructor.
+  /// Uses Actuation(driven). Throws the exceptions of this constructor of Actuation.
   explicit ArmModel(const Arm& driven)
       : driven_(driven), actuation_(driven), shaped_(shaped_arm(driven, actuation_)) {}
   /// Uses the given actuation; `shaped` has one section for each arc.

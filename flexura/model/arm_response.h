@@ -13,7 +13,7 @@ namespace flexura {
 struct SwingMode {
   double frequency = 0;  ///< Undamped angular frequency, rad/s.
   double damping = 0;    ///< Damping ratio.
-  /// Change of bend_x, bend_y and stretch of each arc per unit of z. The largest number is 1.
+  /// Change of bend_x, bend_y and stretch of each arc per unit of z. The largest of these numbers is 1.
   Eigen::VectorXd shape;
   Eigen::VectorXd kick;  ///< Change of z' per change of u', for bend_x, bend_y and stretch of each section.
 };

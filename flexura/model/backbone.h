@@ -45,7 +45,7 @@ struct BackboneSample {
   /// Arc length from the base along the arm at rest, m; strictly increasing over the samples.
   double s_rest = 0;
   double radius = 0.02;     ///< Radius of the tube, m; > 0.
-  std::size_t section = 0;  ///< Index of the arm's section between this sample and the next one.
+  std::size_t section = 0;  ///< Index of the arm's section between this sample and the next sample.
 };
 
 /// The arm's centreline in the world: a chain of circular arcs, each tangent to the previous arc. The chain
@@ -55,7 +55,7 @@ class Backbone {
  public:
   /// Makes one arc for each section of `arm`, with the bends and stretches of `state`. Throws
   /// std::invalid_argument for an arm without sections, and unless `state` has one finite bend and one finite
-  /// stretch per section. Also throws it if a stretched length is not positive.
+  /// stretch per section. Also throws std::invalid_argument if a stretched length is not positive.
   Backbone(const Arm& arm, const ArmState& state);
   /// Makes the backbone of an arm whose sections are parts of the sections of another arm. `section_of` has,
   /// for each section of `arm`, the index of the other arm's section, which becomes Arc::section. Throws the
@@ -67,8 +67,9 @@ class Backbone {
   /// samples (a biarc; docs/renderer.md). For samples of a circular arc, the result is exactly this arc.
   /// Between samples, the material rotates uniformly about the tangent, by less than half a turn. Throws
   /// std::invalid_argument for fewer than two samples, numbers that are not finite, a radius that is not
-  /// positive, or s_rest that does not increase. Also throws it for consecutive samples at the same position,
-  /// or if the angle between a tangent and the direction to the next sample is 90 degrees or more.
+  /// positive, or s_rest that does not increase. Also throws std::invalid_argument for consecutive samples at
+  /// the same position, or if the angle between a tangent and the direction to the next sample is 90 degrees
+  /// or more.
   [[nodiscard]] static Backbone through(std::span<const BackboneSample> samples);
 
   /// Returns the arcs from base to tip. Each section has one or more arcs.

@@ -92,13 +92,15 @@ Table<StepperMotor>& add_limits(Table<StepperMotor>& table) {
                          "straight, unstretched arm.",
               .range = above(0),
               .default_text = "no limit"})
-      .field("pull_out", &StepperMotor::pull_out,
-             {.meaning = "Pull-out torque as pairs [speed in rad/s, torque in N m], in the order of speed. "
-                         "Between the pairs it is interpolated linearly. If a tendon of an elastic arm needs "
-                         "more torque, the motor loses steps.",
-              .range = between(0, 1e9),
-              .count = {1, 1000},
-              .default_text = "no limit"});
+      .field(
+          "pull_out", &StepperMotor::pull_out,
+          {.meaning =
+               "Pull-out torque as pairs [speed in rad/s, torque in N m], in the order of speed. "
+               "Between the pairs, the torque is interpolated linearly. If a tendon of an elastic arm needs "
+               "more torque, the motor loses steps.",
+           .range = between(0, 1e9),
+           .count = {1, 1000},
+           .default_text = "no limit"});
 }
 
 }  // namespace
@@ -182,12 +184,11 @@ const Table<TendonConfig>& fields_of(const TendonConfig*) {
 const Table<DriveConfig>& fields_of(const DriveConfig*) {
   static const auto table =
       Table<DriveConfig>("drive", "Tendon drive of the arm: spools turned by stepper motors.")
-          .field(
-              "radius", &DriveConfig::radius,
-              {.meaning =
-                   "Distance of the tendons from the backbone. A `radius` of a single tendon overrides it.",
-               .unit = Unit::metre,
-               .range = above_up_to(0, 1e3)})
+          .field("radius", &DriveConfig::radius,
+                 {.meaning = "Distance of the tendons from the backbone. A `radius` of a single tendon "
+                             "overrides this distance.",
+                  .unit = Unit::metre,
+                  .range = above_up_to(0, 1e3)})
           .field("disks", &DriveConfig::disks,
                  {.meaning = "Number of equal pieces into which guide disks divide each section. Tendons are "
                              "straight between disks.",

@@ -11,7 +11,8 @@
 
 namespace flexura {
 
-/// One tendon in a file, `[[drive.tendon]]`. By default, radius, motor and spool are those of the drive.
+/// One tendon in a file, `[[drive.tendon]]`. By default, the tendon has the radius, motor and spool of the
+/// drive.
 struct TendonConfig {
   std::int64_t section = 1;      ///< Section at the end of which the tendon ends, counted from 1 at the base.
   double angle = 0;              ///< Angle around the backbone, rad.

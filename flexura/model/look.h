@@ -49,7 +49,7 @@ struct LookConfig {
   std::vector<Disk> disk;
   ColorConfig disk_color = {0.35, 0.35, 0.37};
 
-  /// Returns all markers on an arm from base to tip: those of `bands` and those of `marker`.
+  /// Returns all markers on an arm from base to tip: the markers of `bands` and of `marker`.
   [[nodiscard]] std::vector<Marker> markers(const Arm& arm) const;
 };
 

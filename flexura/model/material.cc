@@ -88,7 +88,7 @@ Table<MaterialConfig>& add_moduli(Table<MaterialConfig>& table) {
 
 const Table<StiffnessConfig>& fields_of(const StiffnessConfig*) {
   static const auto table =
-      Table<StiffnessConfig>("stiffness", "Stiffness of a rod, uniform along it.")
+      Table<StiffnessConfig>("stiffness", "Stiffness of a rod, uniform along the rod.")
           .field("shear", &StiffnessConfig::shear,
                  stiffness("Shear stiffness GA towards x and y of the cross-section, N.", true))
           .field("stretch", &StiffnessConfig::stretch, stiffness("Axial stiffness EA, N."))

@@ -15,7 +15,8 @@ namespace flexura {
 /// A convex body that the arm must not touch.
 struct Obstacle {
   std::string name = {};  ///< Name in messages.
-  /// Length from the arm's base, along the unstretched arm, that may touch the obstacle, m.
+  /// Length of the part of the arm next to its base that may touch the obstacle, along the unstretched arm,
+  /// m.
   double ignore_base = 0;
   /// Signed distance of a point in W from the obstacle's surface, m: a convex function that is negative
   /// inside.
@@ -37,7 +38,7 @@ inline constexpr std::array<double, 3> obstacle_color = {0.4, 0.45, 0.4};
 /// A half space: all points on the side of a plane that is opposite to the plane's normal.
 struct PlaneConfig {
   std::string name = {};  ///< Name in messages; "": the obstacle's kind and position in the list.
-  /// Length from the arm's base that may touch the obstacle, m (Obstacle::ignore_base).
+  /// Length of the part of the arm next to its base that may touch the obstacle, m (Obstacle::ignore_base).
   double ignore_base = 0;
   bool may_touch = false;  ///< Whether the arm may touch the obstacle, for example to grasp it.
   std::array<double, 3> point = {0, 0, 0};  ///< A point of the plane, in W, m.

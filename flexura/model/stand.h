@@ -17,11 +17,11 @@ struct ScreenConfig {
                                   /// Normal of the screen's front, in W. The direction of the screen's height
                                   /// points along W's Y as far as possible.
                                   1};
-  double width = 1, height = 1;             ///< Size, m.
-  double brightness = 0.85;                 ///< Emitted light; 1 is a camera's full scale.
-  std::array<double, 2> gradient = {0, 0};  ///< Relative increase of brightness from the screen's middle to
-                                            ///< the right edge and to the upper edge.
-  double fall_off = 0;                      ///< Relative loss of brightness in the corners.
+  double width = 1, height = 1;  ///< Size, m.
+  double brightness = 0.85;      ///< Emitted light; 1 is a camera's full scale.
+  /// Relative increase of brightness from the screen's middle to the right edge and to the upper edge.
+  std::array<double, 2> gradient = {0, 0};
+  double fall_off = 0;  ///< Relative loss of brightness in the corners.
 };
 
 /// The calibration cylinder: dark gray, with four red lines parallel to its axis. E is the cylinder's frame.

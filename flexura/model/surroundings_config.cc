@@ -71,7 +71,8 @@ const Table<PayloadConfig>& fields_of(const PayloadConfig*) {
                   .unit = Unit::metre,
                   .range = between(-1e3, 1e3)})
           .field("from", &PayloadConfig::from,
-                 {.meaning = "Time at which the arm picks up the payload, which is at rest before.",
+                 {.meaning =
+                      "Time at which the arm picks up the payload. Before this time, the payload is at rest.",
                   .unit = Unit::second,
                   .range = between(0, 1e9)})
           .field("until", &PayloadConfig::until,

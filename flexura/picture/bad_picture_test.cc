@@ -168,8 +168,10 @@ TEST(BadPicture, DamagedIsCalledSoWithWhatTheLibrarySays) {
   EXPECT_THAT(complaint("\x89PNG\n\x1A\n but no more"), HasSubstr("the PNG " + is_damaged));
   EXPECT_THAT(complaint("\xFF\xD8\xFF\xD8 twice"), HasSubstr("the JPEG " + is_damaged));
   EXPECT_EQ(complaint("P2 2 1 9 1 x"), "the PNM " + is_damaged + "no number at byte 11");
-  EXPECT_EQ(complaint("P2 2 1 255 1 999"), "the PNM " + is_damaged + "a value of 999, and 255 is white");
-  EXPECT_EQ(complaint("P5 2 1 9\n\t\n"), "the PNM " + is_damaged + "a value of 10, and 9 is white");
+  EXPECT_EQ(complaint("P2 2 1 255 1 999"),
+            "the PNM " + is_damaged + "a value of 999, which is above the value 255 of white");
+  EXPECT_EQ(complaint("P5 2 1 9\n\t\n"),
+            "the PNM " + is_damaged + "a value of 10, which is above the value 9 of white");
   EXPECT_EQ(complaint("P1 2 1 1 3"), "the PNM " + is_damaged + "bits that are neither 0 nor 1");
   std::string tiff = tiff_file(smooth_picture(21, 13, 1), {.compression = COMPRESSION_ADOBE_DEFLATE});
   tiff[8] = 'y';

@@ -26,7 +26,8 @@ struct PngConfig {
 /// - `PNG`: 1 to 16 bits per value, interlaced or not.
 /// - `JPEG`: gray, colour or four inks (CMYK, YCCK; inverted, as introduced by Adobe), also progressive.
 /// - `TIFF`: its first page, in gray, RGB or a palette (1 to 16 bits per value), or CMYK, YCbCr or CIELab (in
-///   bytes). Strips or tiles, with every compression of libtiff except JBIG and the JPEG of before 1995.
+///   bytes). Such files have strips or tiles, and any compression of libtiff except JBIG and the old JPEG
+///   format of before 1995.
 /// - `PNM`: P1 to P6.
 ///
 /// The result has one channel for gray, including palettes of only grays, and otherwise three channels (red,
@@ -36,8 +37,8 @@ struct PngConfig {
 /// kind.
 ///
 /// Throws InputError with one line, which begins with `name`, if the file is of another kind, truncated,
-/// damaged or without pixels. Also throws it for more than `most_pixels` pixels, before allocating memory for
-/// them. Writes nothing to standard error. Thread-safe.
+/// damaged or without pixels. Also throws InputError for more than `most_pixels` pixels, before allocating
+/// memory for them. Writes nothing to standard error. Thread-safe.
 [[nodiscard]] Picture read_picture(std::span<const std::uint8_t> file, const std::string& name,
                                    std::size_t most_pixels);
 
@@ -51,7 +52,7 @@ struct JpegConfig {
 
 /// Returns the bytes of a baseline JPEG file: gray (one channel) or RGB (three channels). Equal pictures give
 /// equal bytes. Throws std::invalid_argument for a picture without pixels, with more than 65500 pixels per
-/// side or with another number of channels. Also throws it for an invalid quality.
+/// side or with another number of channels. Also throws std::invalid_argument for an invalid quality.
 [[nodiscard]] std::string jpeg(const Image<std::uint8_t>& image, JpegConfig config = {});
 
 /// Returns the bytes of a TIFF file: 32-bit floating point values, one or more channels, lossless (zlib).

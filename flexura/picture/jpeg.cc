@@ -81,7 +81,7 @@ std::string jpeg(const Image<std::uint8_t>& image, JpegConfig config) {
   const bool is_written = write(image, config.quality, &job, &errors, &out);
   jpeg_destroy_compress(&job);
   const std::unique_ptr<unsigned char, decltype(&std::free)> owner(out.bytes, &std::free);
-  if (!is_written) throw std::runtime_error(std::string("libjpeg did not make the image: ") + errors.text);
+  if (!is_written) throw std::runtime_error(std::string("libjpeg failed to write the image: ") + errors.text);
   return {reinterpret_cast<const char*>(out.bytes), out.size};
 }
 

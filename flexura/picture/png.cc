@@ -114,7 +114,7 @@ std::string png_of(const Image<T>& image, PngConfig config) {
   const Writer writer;
   if (writer.png == nullptr || writer.info == nullptr ||
       !write(writer, header, rows.data(), effort_of(image, config.level), &bytes))
-    throw std::runtime_error("libpng did not make the image");
+    throw std::runtime_error("libpng failed to write the image");
   return bytes;
 }
 

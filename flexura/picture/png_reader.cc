@@ -111,7 +111,7 @@ Image<T> image_of(const PngReader& reader, const ReadHeader& header) {
   Image<T> image(static_cast<int>(header.width), static_cast<int>(header.height),
                  png_get_channels(reader.png, reader.info));
   if (png_get_rowbytes(reader.png, reader.info) != image.row(0).size_bytes())
-    throw std::logic_error("libpng has rows of another form than it was asked for");
+    throw std::logic_error("libpng returned rows in another format than requested");
   std::vector<png_bytep> rows;
   rows.reserve(header.height);
   for (int v = 0; v < image.height(); ++v) rows.push_back(reinterpret_cast<png_bytep>(image.row(v).data()));

@@ -94,7 +94,8 @@ Image<Value> image_of(const PnmHeader& header, Next&& next) {
   for (Value& value : image.values()) {
     const std::int64_t written = next();
     if (written > header.most)
-      throw damaged("PNM", fmt::format("a value of {}, and {} is white", written, header.most));
+      throw damaged("PNM",
+                    fmt::format("a value of {}, which is above the value {} of white", written, header.most));
     value = is_scaled ? byte_of(written, header.most) : static_cast<Value>(written);
   }
   return image;

@@ -28,8 +28,8 @@ struct CloseTiff {
 };
 using OpenTiff = std::unique_ptr<TIFF, CloseTiff>;
 
-/// Opens the first picture of `input`, which must outlive the result. libtiff then prints nothing and
-/// allocates at most `most_bytes` at once. Throws std::runtime_error if `input` is not a TIFF file.
+/// Opens the first picture of `input`, which must outlive the result. libtiff then prints nothing, and
+/// allocates at most `most_bytes` bytes at once. Throws std::runtime_error if `input` is not a TIFF file.
 [[nodiscard]] OpenTiff open_tiff(TiffInput* input, std::size_t most_bytes);
 
 /// Reads a file with colours other than gray or RGB. libtiff converts them to red, green and blue with 8 bits

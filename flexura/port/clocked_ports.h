@@ -15,14 +15,14 @@
 namespace flexura {
 
 /// Converts times of a device's clock to times of the rig's clock. If the device's times do not decrease, the
-/// results do not decrease either. The only exception is that previous results turn out to be too late.
+/// results do not decrease either. The results decrease only if previous results turn out to be too late.
 class MappedTime {
  public:
   /// `clock` must outlive this object.
   explicit MappedTime(DeviceClock& clock) : clock_(clock) {}
 
-  /// Returns the time of an answer on the rig's clock, s. The parameters are those of DeviceClock::add().
-  /// While the relation of the clocks is unknown, returns `device`.
+  /// Returns the time of an answer on the rig's clock, s. The parameters are as for DeviceClock::add(). While
+  /// the relation of the clocks is unknown, returns `device`.
   double of(double device, double earliest, double latest) {
     (void)clock_.add(device, earliest, latest);
     if (!clock_.is_known()) return device;

@@ -20,12 +20,12 @@ struct DeviceClockConfig {
 /// Conversion of times of a device's clock to times of the rig's clock. The conversion is estimated from the
 /// device's times in answers and from the answers' times of arrival.
 ///
-/// The only assumption is that the device takes the time of an answer between its request and its arrival.
+/// The only assumption is that the device reads its clock between the request and the arrival of the answer.
 /// Each answer then determines a lower and an upper bound on the line (offset and drift) that converts device
 /// time to rig time. The tightest bounds of each second are kept. The result is the middle between the
 /// earliest and the latest time of all lines within the bounds. Long delays result in loose bounds, which do
-/// no harm. A few short delays are sufficient. The bounds are from F. Cristian 1989, the lines from S. Moon,
-/// P. Skelly, D. Towsley 1999.
+/// no harm. A few short delays are sufficient. The bounds are from Cristian 1989, the lines from Moon,
+/// Skelly, Towsley 1999.
 ///
 /// If the age of answers is unknown, as for pictures, there are no lower bounds. The quickest answers within
 /// the window are then assumed to have the shortest possible delay.

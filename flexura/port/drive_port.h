@@ -19,15 +19,15 @@ enum class DriveQuantity {
 struct DriveReading {
   double time = 0;             ///< Time of the measurement, s.
   std::vector<double> values;  ///< Measured value of each axis, in the drive's quantity.
-  /// Load position of each axis, which includes the backlash, microsteps. Only a drive of motor positions
-  /// that tracks its backlash reports it; otherwise it is empty.
+  /// Load position of each axis, which includes the backlash, microsteps. Empty, unless the drive has motor
+  /// positions and tracks its backlash.
   std::vector<double> carried;
   bool moving = false;  ///< Whether a commanded motion is in progress or pending.
 };
 
 /// A motion controller. A DrivePort moves each axis to a target and needs no model of the arm. The axes are
-/// those of a Drive, in the drive's order. Commands return before the motion is completed. A command replaces
-/// the previous command. Targets outside an axis's range are clamped.
+/// the axes of a Drive, in the drive's order. Commands return before the motion is completed. A command
+/// replaces the previous command. Targets outside an axis's range are clamped.
 class DrivePort {
  public:
   virtual ~DrivePort() = default;
@@ -39,8 +39,9 @@ class DrivePort {
   [[nodiscard]] virtual DriveQuantity quantity() const = 0;
   [[nodiscard]] virtual std::size_t axes() const = 0;
   /// Moves each axis to its target. All axes arrive at the same time after `duration`, s. An axis that needs
-  /// longer arrives as soon as possible. Duration 0 means as soon as possible. The command is refused if the
-  /// number of targets is wrong, a target is not finite, or the duration is negative or not finite.
+  /// longer arrives as soon as possible. With duration 0, the axes arrive as soon as possible. The command is
+  /// refused if the number of targets is wrong, a target is not finite, or the duration is negative or not
+  /// finite.
   [[nodiscard]] virtual CommandOutcome command(std::span<const double> targets, double duration) = 0;
   /// Stops all axes as fast as possible.
   [[nodiscard]] virtual CommandOutcome halt() = 0;

@@ -31,9 +31,9 @@ class ArmPort {
   ArmPort& operator=(const ArmPort&) = delete;
 
   /// Moves the drives to the positions for which the model predicts the shape `state`. All drives arrive at
-  /// the same time after `duration`, s. A drive that needs longer arrives as soon as possible. Duration 0
-  /// means as soon as possible. For continuous motion, each command's duration should last until the next
-  /// command. A duration that is negative or not finite is also refused.
+  /// the same time after `duration`, s. A drive that needs longer arrives as soon as possible. With duration
+  /// 0, the drives arrive as soon as possible. For continuous motion, each command's duration should last
+  /// until the next command. A duration that is negative or not finite is also refused.
   [[nodiscard]] virtual CommandOutcome command(const ArmState& state, double duration) = 0;
   /// Stops all drives as fast as possible.
   [[nodiscard]] virtual CommandOutcome halt() = 0;

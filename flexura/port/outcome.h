@@ -59,7 +59,7 @@ class [[nodiscard]] Outcome {
   std::variant<T, PortFault> held_;
 };
 
-/// Value of the outcome of an accepted command.
+/// Value in the outcome of an accepted command, without content.
 struct Accepted {};
 /// Result of a command: accepted, or a fault. The result is available before the motion is completed.
 using CommandOutcome = Outcome<Accepted>;

@@ -19,8 +19,8 @@ struct RigModel {
   Arm arm;                         ///< Arm with one section per arc.
   std::vector<double> bend_gains;  ///< Factor on each arc's bend; empty: all 1.
   std::vector<CameraConfig> cameras;
-  /// If any section has several arcs: the arm in terms of the sections that the drives bend. Otherwise an arm
-  /// without sections.
+  /// If any section has several arcs: the arm in terms of the sections that the drives bend. If every section
+  /// is a single arc: an arm without sections.
   Arm driven = {};
   /// Conversion of commands to shapes, if any section has several arcs; otherwise the identity.
   Actuation actuation = {};
@@ -47,9 +47,8 @@ struct RigStance {
   std::size_t camera = 0;  ///< Index in RigModel::cameras.
   HeadState head = {};
   StageState stage = {};
-  /// Index of an earlier RigStance of the observations, if the camera has neither panned nor tilted since
-  /// then. Then this stance and the earlier one have equal errors of the head's angles. Zoom and stage may
-  /// have moved.
+  /// Index of an earlier RigStance of the observations, if the camera has neither panned nor tilted since the
+  /// earlier stance. Both stances then have equal errors of the head's angles. Zoom and stage may have moved.
   std::optional<std::size_t> turned_as = {};
 
   /// Returns the axis positions without the camera's index.

@@ -12,8 +12,8 @@ namespace flexura {
 
 /// Reading of a camera's axis positions.
 struct StanceReading {
-  double time = 0;  ///< Time of the head's reading, s; without a head, of the stage's reading; without both,
-                    ///< the current time.
+  /// Time of the head's reading, s; without a head, of the stage's reading; without both, the current time.
+  double time = 0;
   RigStance stance;
   bool moving = false;  ///< Whether head or stage is moving.
 };

@@ -23,7 +23,8 @@ struct Border {
 };
 
 /// Returns the border at which a function of the image is zero. `value`: value of the function at the ray.
-/// `by_direction`: its derivative with respect to the ray's (a, b). The result is exact to first order.
+/// `by_direction`: derivative of the function with respect to the ray's (a, b). The result is exact to first
+/// order.
 [[nodiscard]] inline Border border_of(double value, const Eigen::Vector2d& by_direction, const Ray& ray,
                                       double depth) {
   const Eigen::Vector2d by_pixel = ray.by_pixel.transpose() * by_direction;

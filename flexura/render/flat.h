@@ -29,7 +29,7 @@ struct Circle {
 
 /// Relation of a ray to a circle. `value` is negative if the ray hits the disc in front of the camera, and
 /// zero on the circle's image. The two borders are on opposite sides of the circle's image. The first border
-/// is the nearer one.
+/// is the nearer border.
 struct CircleView {
   double value = 0;
   std::array<Border, 2> borders;

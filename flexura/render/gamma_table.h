@@ -7,8 +7,8 @@
 
 namespace flexura {
 
-/// Lookup table of gamma-encoded levels: floor(top x^(1/gamma) + 1/2) for a float x from 0 to 1. Results
-/// equal those in double precision.
+/// Lookup table of gamma-encoded levels: floor(top x^(1/gamma) + 1/2) for a float x from 0 to 1. The results
+/// equal the results in double precision.
 class GammaTable {
  public:
   GammaTable() = default;

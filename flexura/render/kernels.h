@@ -20,7 +20,7 @@ const Kernels* avx2_kernels();
 const Kernels* avx512_kernels();
 
 /// Returns the kernels of an instruction set. Throws std::invalid_argument if this processor does not support
-/// it.
+/// the instruction set.
 const Kernels& kernels_of(SimdPath path);
 
 }  // namespace flexura

@@ -32,7 +32,8 @@ class QuickPicture {
     int u, v;
   };
 
-  /// `path`: the instruction set to use. Throws std::invalid_argument if the processor does not support it.
+  /// `path`: the instruction set to use. Throws std::invalid_argument if the processor does not support this
+  /// instruction set.
   explicit QuickPicture(SimdPath path = best_simd_path());
 
   /// Draws into `picture`, whose images must have the right size. Returns false for unsupported cases, and

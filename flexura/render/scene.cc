@@ -73,7 +73,7 @@ void require_pose(const Pose& pose, const Place& place) {
 constexpr std::size_t most_parts = 4096;
 
 void require_few(std::size_t count, const char* what) {
-  if (count > most_parts) refuse("{} {}: there can be {}", count, what, most_parts);
+  if (count > most_parts) refuse("{} {}: expected at most {}", count, what, most_parts);
 }
 
 void check_arm(const ArmLook& arm) {

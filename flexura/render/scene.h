@@ -38,7 +38,7 @@ struct GuideDisk {
 
 /// Visible properties of the arm. An empty `tube` means that there is no arm.
 struct ArmLook {
-  std::vector<Arc> tube;  ///< Arcs from base to tip. Each arc starts at the end of the previous one.
+  std::vector<Arc> tube;  ///< Arcs from base to tip. Each arc starts at the end of the previous arc.
   TipKind tip = TipKind::flat;
   Color albedo = {0.16, 0.16, 0.17};
   Color disk_albedo = {0.35, 0.35, 0.37};

@@ -28,7 +28,7 @@ struct SensorRows {
       conditioned;  ///< Rows after clamping and vignetting: as many as the PSF combines, plus one.
   std::vector<std::uint8_t> same;  ///< SameAs flags of the blocks in the rows of `conditioned`.
   std::vector<std::uint8_t>
-      /// For each block, the number of successive rows, up to the last one, that equal the previous row.
+      /// For each block, the number of successive rows, up to the last row, that equal their previous row.
       age;
   /// State of each block of the current row.
   std::vector<std::uint8_t> is_plain, is_even, is_known, is_needed;
@@ -41,23 +41,26 @@ struct SensorRows {
 
 /// An image sensor, which converts light to pixel values. The steps for each value are, in physical order:
 ///
-/// 1. Light that is negative or NaN counts as 0. Light above 2^20 counts as 2^20. 2. Vignetting:
-/// multiplication by 1 - vignetting (r/R)^2. Here r is the distance from the middle of the image, and R is
-/// the distance of the corner pixels. 3. PSF: convolution with a Gaussian along columns and rows, cut at 3.5
-/// standard deviations. The kernel has unit sum and exactly the configured variance. Outside the image, the
-/// pixels of its edge are repeated. Uniform areas remain exactly unchanged. 4. Shot noise: normal with the
-/// variance light / full_well (Poisson distribution for many electrons); then
-///    multiplication by the gain.
-/// 5. Read noise: normal. 6. Quantisation: clamping to [0, 1], power 1/gamma, multiplication by 2^bits - 1,
-/// rounding half up.
+/// - Clamping: light that is negative or NaN counts as 0. Light above 2^20 counts as 2^20.
+/// - Vignetting: multiplication by 1 - vignetting (r/R)^2. Here r is the distance from the image's middle,
+///   and R is the distance of the corner pixels from this middle.
+/// - PSF: convolution with a Gaussian along columns and rows, cut at 3.5 standard deviations. The kernel has
+///   unit sum and exactly the configured variance. Outside the image, the pixels of its edge are repeated.
+///   Uniform areas remain exactly unchanged.
+/// - Shot noise: normally distributed with the variance light / full_well (Poisson distribution for many
+///   electrons).
+/// - Gain: multiplication by the gain.
+/// - Read noise: normally distributed.
+/// - Quantisation: clamping to [0, 1], power 1/gamma, multiplication by 2^bits - 1, rounding half up.
 ///
 /// Noise depends only on the stream, the pixel and the channel. Hence images are equal for any number of
 /// threads and any instruction set.
 class Sensor {
  public:
   /// Throws std::invalid_argument for a size below 1 or above 2^20, a PSF above 30 px, or bits outside 1 to
-  /// 16. Also throws it for a negative or infinite strength of an effect, and for a gain or gamma that is not
-  /// positive. The same exception is thrown for an instruction set that the processor does not support.
+  /// 16. Also throws std::invalid_argument for a negative or infinite strength of an effect, and for a gain
+  /// or gamma that is not positive. The same exception is thrown for an instruction set that the processor
+  /// does not support.
   explicit Sensor(const SensorConfig& config, SimdPath path = best_simd_path());
 
   [[nodiscard]] const SensorConfig& config() const { return config_; }

@@ -37,7 +37,7 @@ enum SameAs : unsigned char { same_as_left = 1, same_as_above = 2 };
 /// Work that a block of a row needs, to avoid recomputing known results.
 enum class BlockWork : unsigned char {
   none,  ///< The block is not needed.
-  copy,  ///< All rows that are blurred into the block are equal. One of them is copied.
+  copy,  ///< All rows that are blurred into the block are equal. One of these rows is copied.
   blur,
 };
 
@@ -51,8 +51,8 @@ struct SensorKernels {
   /// Blurs across 2 * radius + 1 rows, of which `rows[radius]` is the middle.
   void (*blur_down)(const SensorRow& row, const float* const* rows, const BlockWork* work, float* to);
   /// Blurs `light` along the row if there are weights, and computes levels, unrounded or truncated to
-  /// integers. If `is_known[block]`, the result equals that of the previous block, and the block's light is
-  /// not read.
+  /// integers. If `is_known[block]`, the result equals the result of the previous block, and the block's
+  /// light is not read.
   void (*to_levels)(const SensorRow& row, const float* light, const unsigned char* is_known,
                     const SensorLevels& levels, NoiseRow noise, float* to);
   void (*to_bytes)(const SensorRow& row, const float* light, const unsigned char* is_known,

@@ -129,7 +129,7 @@ void expect_block(const SensorRow& row, const float* light, const SensorLevels& 
 constexpr float sum_centre = 8 + 4096702.5f / 1048576;
 constexpr float normal_terms[4] = {0.841045443f, 0.0172821804f, -0.00237808649f, 0.000207595845f};
 
-// Factors of the hash of a value's position in its row: C. Wellons' lowbias32, with a key added before and
+// Factors of the hash of a value's position in its row: Wellons' lowbias32, with a key added before and
 // within. The first step of lowbias32 is omitted, because it does not change numbers below 2^16. `places` are
 // the positions times the first factor, plus a key.
 constexpr std::uint32_t first_factor = 0x7feb352d, second_factor = 0x846ca68b;

@@ -13,12 +13,13 @@ constexpr std::size_t span_step = 32;
 enum PixelState : std::uint8_t {
   state_behind = 0,  ///< Background or screen.
   state_arm = 1,     ///< Surface of the arm, or an end of the arm.
-  state_border =
-      2,  ///< Crossed by the arm's contour or, close to the contour, by the curved edge of a ring or line.
+  /// The pixel is crossed by the arm's contour or, close to the contour, by the curved edge of a ring or
+  /// line.
+  state_border = 2,
   state_exact = 4,  ///< The reference path draws the pixel.
-  state_base = 8,   ///< May contain the rim of the arm's base.
-  state_tip = 16,   ///< May contain the rim of the arm's tip.
-  state_edge = 32,  ///< Crossed by a screen's edge, or by the line where two screens cross.
+  state_base = 8,   ///< The pixel may contain the rim of the arm's base.
+  state_tip = 16,   ///< The pixel may contain the rim of the arm's tip.
+  state_edge = 32,  ///< The pixel is crossed by a screen's edge, or by the line where two screens cross.
 };
 
 /// A linear function of the image: value + by_u (u - u0) + by_v (v - v0). For a lens with distortion, (u, v)
@@ -41,7 +42,7 @@ struct SpanRow {
   float* light = nullptr;
   std::uint8_t* state = nullptr;
   LensRow lens;
-  int* borders = nullptr;        ///< Columns that a contour or a curved edge may divide; draw() adds them.
+  int* borders = nullptr;  ///< Columns that a contour or a curved edge may divide; draw() adds these columns.
   std::size_t border_count = 0;  ///< Number of entries in `borders`.
   bool has_edge = false;         ///< Whether any pixel has state_edge.
   bool has_exact = false;        ///< Whether any pixel is left to the reference path.
@@ -59,8 +60,8 @@ struct SpanEdge {
 struct SpanPiece {
   float u0, v0, depth0;
   Linear point[3], direction[3];
-  Linear way;  ///< Depth from depth0 to approximately the plane that contains the piece's axis and faces the
-               ///< camera, m.
+  /// Depth from depth0 to approximately the plane that contains the piece's axis and faces the camera, m.
+  Linear way;
   /// Curvature, 1/m; radius at the piece's start, m; change of the radius per arc length.
   float curvature, radius, widening;
   float widest;  ///< Largest radius, m.

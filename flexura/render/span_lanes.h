@@ -91,7 +91,7 @@ template <bool is_tapered>
   return ray;
 }
 
-// Returns atan(x) / x as a function of x^2 up to 1, with an error of 2e-8 (M. Abramowitz, I. Stegun, 4.4.49);
+// Returns atan(x) / x as a function of x^2 up to 1, with an error of 2e-8 (Abramowitz, Stegun, 4.4.49);
 // constant beyond.
 [[gnu::always_inline]] inline Wide arc_by_tangent(const Wide& x_square) {
   const Wide q = choose(x_square < 1, x_square, Wide(1));

@@ -56,7 +56,7 @@ struct RingStretch {
 };
 
 /// A side of a convex body, other than the arm, that casts a shadow. Seen from the light, the body is the
-/// intersection of half planes. A side is the line that bounds one of them.
+/// intersection of half planes. A side is the line that bounds one of these half planes.
 struct CasterSide {
   Eigen::Vector3d normal;  ///< Outward unit normal in C, perpendicular to the light and the line.
   double reach = 0;        ///< Distance of the body's center from the line, m.

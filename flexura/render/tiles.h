@@ -10,8 +10,8 @@
 
 namespace flexura {
 
-/// Lists, for each tile of 16 x 16 px, the primitives that may be visible or have a border there. Each list
-/// is computed when it is first needed.
+/// Lists, for each tile of 16 x 16 px, the primitives that may be visible or have a border there. A list is
+/// computed only when the list is needed for the first time.
 class Tiles {
  public:
   static constexpr int size = 16;

@@ -75,9 +75,9 @@ struct MarkerView {
 /// NaN for the background, and for points that leave the lens's field of view. Points of the arm keep their
 /// section, their fraction of the section's length, and their position in the cross-section. Points of
 /// screens and of the calibration cylinder move with these bodies. Obstacles are fixed. Points need not be
-/// visible in the second view. Throws std::invalid_argument for a scene that check() rejects. Also throws it
-/// if the numbers of tube arcs, disks or screens of the two scenes differ, and if only one of the scenes has
-/// the cylinder.
+/// visible in the second view. Throws std::invalid_argument for a scene that check() rejects. Also throws
+/// std::invalid_argument if the numbers of tube arcs, disks or screens of the two scenes differ, and if only
+/// one of the scenes has the cylinder.
 [[nodiscard]] Image<float> optical_flow(const Renderer& renderer, const Scene& scene, const View& view);
 
 }  // namespace flexura

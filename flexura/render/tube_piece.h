@@ -33,9 +33,9 @@ struct TubePiece {
   int body = 0;
   /// Center of a ball that contains the piece, in P, m.
   Eigen::Vector3d bound_center = Eigen::Vector3d::Zero();
-  double bound_radius = 0;   ///< Radius of the ball, m.
-  double near_radius = 0;    ///< Radius of a ball with the same center that also contains everything near the
-                             ///< piece in the image, m.
+  double bound_radius = 0;  ///< Radius of the ball, m.
+  /// Radius of a ball with the same center that also contains everything near the piece in the image, m.
+  double near_radius = 0;
   std::size_t tube_arc = 0;  ///< Arc of the tube from which the piece was cut.
   double start_in_arc = 0;   ///< Distance of the piece's start from this arc's start, m.
 
@@ -108,8 +108,8 @@ struct NearMisses {
                                    const DepthRange& range);
 
 /// Returns the depth of first_minimum(), or an earlier depth at which the ray's inward motion is slowest
-/// before it becomes faster again. At such a depth, a small step in the image can open a gap. `has_entered`:
-/// `depth` is in the previous piece.
+/// before it becomes faster again. At such a depth, a ray through a nearby image point may leave the piece
+/// and enter the piece again. `has_entered`: `depth` is in the previous piece.
 [[nodiscard]] double first_slowdown(const TubePiece& piece, const LocalRay& ray, double depth,
                                     const DepthRange& range, bool has_entered);
 

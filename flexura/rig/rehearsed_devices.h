@@ -17,7 +17,7 @@
 
 namespace flexura {
 
-/// A simulated stepper controller on a pseudoterminal: Grbl for three axes, otherwise grblHAL.
+/// A simulated stepper controller on a pseudoterminal, with Grbl for three axes, otherwise with grblHAL.
 class RehearsedController {
  public:
   /// The controller has the speed and acceleration limits of the motors of `axes`, which are at most 8.
@@ -44,9 +44,9 @@ class RehearsedController {
   DeviceServer server_;
 };
 
-/// A simulated VISCA head at a UDP port, which moves the head of a camera in a RehearsedWorld. The rates are
-/// those of the head in the RehearsedWorld, not the speed in the command. All axes of the head stop at the
-/// same time.
+/// A simulated VISCA head at a UDP port, which moves the head of a camera in a RehearsedWorld. The head moves
+/// at the rates of the head in the RehearsedWorld, not at the speed in the command. All axes of the head stop
+/// at the same time.
 class RehearsedHead {
  public:
   /// `camera`: index of the camera in the world. `model`: model of the camera. The world must outlive this

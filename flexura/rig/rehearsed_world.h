@@ -17,7 +17,7 @@
 namespace flexura {
 
 /// The simulated rig of an experiment in real time. Simulated controllers outside this object turn its
-/// motors, with the limits of the controllers, not of the drive. Several threads may use it.
+/// motors, with the limits of the controllers, not of the drive. Several threads may use one RehearsedWorld.
 class RehearsedWorld {
  public:
   /// Function that returns the present position of each motor, microsteps, as the motor's controller counts.

@@ -26,7 +26,7 @@ struct FilmedFrame {
   std::string message = {};  ///< Result of logged_image() for the frame; "" if not yet computed.
 };
 
-/// True state of a rig. The rig's ports do not provide it, and algorithms must not use it.
+/// True state of a rig. The rig's ports do not provide the true state, and algorithms must not use it.
 class RigTruth {
  public:
   virtual ~RigTruth() = default;

@@ -31,7 +31,8 @@ class ArmEquipment {
   ArmEquipment(const ArmEquipment&) = delete;
   ArmEquipment& operator=(const ArmEquipment&) = delete;
 
-  /// Makes the ports. Afterwards the drives may move. `time_shift`, s, is added to the times of readings.
+  /// Makes the ports. After this function, the drives may move. `time_shift`, s, is added to the times of
+  /// readings.
   void start(double time_shift = 0);
 
   /// Returns the arm, after start().

@@ -21,11 +21,10 @@ namespace {
 void check_default_cameras(const Setup& setup, Reader& reader) {
   for (const CameraConfig& camera : setup.cameras()) {
     if (camera.mount.look_at != camera.mount.position) continue;
-    reader.problem_at(
-        "stand.camera_distances",
-        fmt::format("puts camera \"{}\" at the arm's base: expected distances that are not lost beside the "
-                    "base's coordinates",
-                    camera.name));
+    reader.problem_at("stand.camera_distances",
+                      fmt::format("puts camera \"{}\" at the arm's base: expected distances that are not "
+                                  "negligible compared with the base's coordinates",
+                                  camera.name));
   }
 }
 

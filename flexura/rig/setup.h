@@ -49,7 +49,7 @@ struct Setup {
   std::string title;      ///< Title of the report.
   std::int64_t seed = 1;  ///< Seed of all random numbers of the run; >= 0.
   std::vector<std::string>
-      include;  ///< Files to include; the file reader resolves them and leaves this empty.
+      include;  ///< Files to include; the file reader includes these files and leaves this list empty.
   ClockConfig clock;
   RecordConfig record;
   ArmConfig arm;  ///< Model of the arm that the tasks use.

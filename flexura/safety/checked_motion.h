@@ -24,8 +24,8 @@ struct CheckedMotion {
   /// Function that is called with the completed fraction of this motion's check. The function returns false
   /// to stop the check.
   std::function<bool(double done)> go_on;
-  /// Whether the motion is an elastic arm's shape. Then jumps are those of the command, which are checked
-  /// separately.
+  /// Whether the motion is an elastic arm's shape. If so, jumps of the command are checked separately, and
+  /// not in the shape.
   bool is_shape = false;
 
   [[nodiscard]] const Motion& motion() const { return *timed.motion; }

@@ -58,8 +58,8 @@ class ContactWatch {
   /// Returns the smallest possible clearance of the chain's last section during the chain's Swing, m, as
   /// precisely as `query` requires. For an arm at rest, this is the clearance.
   [[nodiscard]] double clearance(const Chain& chain, const DistanceQuery& query) const;
-  /// Returns bounds on the depth of the contact during the chain's Swing, m; `contact_tolerance` if there is
-  /// no deeper contact. The bounds only distinguish three cases: certainly free, certainly in contact, and
+  /// Returns bounds on the depth of the contact during the chain's Swing, m, or `contact_tolerance` if there
+  /// is no deeper contact. The bounds only distinguish three cases: certainly free, certainly in contact, and
   /// undecided. If undecided, the upper bound is `contact_tolerance` plus the section's possible motion.
   [[nodiscard]] QuantityBounds bounds(const Chain& chain) const;
 
@@ -75,7 +75,7 @@ class ContactWatch {
   double share_ = 1;             // Fraction of the arm's motion that can change its distance to the obstacle.
 };
 
-/// Depths of the contacts of every section, or pair of sections, with each watched object, m;
+/// Depths of the contacts of every section, or pair of sections, with each watched object, m, or
 /// `contact_tolerance` if there is no deeper contact. The motion must have known bounds on its rates. A
 /// search over many quantities only needs to know whether there is a contact. Hence `find_values` returns any
 /// existing depth above the tolerance, which is much faster to compute than the largest depth.

@@ -36,10 +36,10 @@ struct Jump {
 [[nodiscard]] bool changes_stretch(const ArmState& a, const ArmState& b, std::size_t section);
 
 /// Returns the jumps of any motion up to the time `until`, s. Repeatedly halves every interval of `step` s
-/// and continues in the half with the larger change. During this process, the change of a jump keeps its
-/// size, but the change of a fast motion does not. A jump is found if it is at least 1/32 of the motion's
-/// change within the step. Changes that are not finite are ignored. `go_on` may be empty. `go_on` receives
-/// the completed share of the search, and returns false to end the search.
+/// and continues in the half with the larger change. When an interval is halved, the change at a jump keeps
+/// its size, but the change of a fast motion decreases. A jump is found if it is at least 1/32 of the
+/// motion's change within the step. Changes that are not finite are ignored. `go_on` may be empty. `go_on`
+/// receives the completed share of the search, and returns false to end the search.
 [[nodiscard]] std::vector<Jump> find_jumps(const Motion& motion, double step,
                                            double until = std::numeric_limits<double>::infinity(),
                                            const std::function<bool(double done)>& go_on = {});

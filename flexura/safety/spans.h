@@ -58,7 +58,7 @@ class WatchedQuantities {
 
 /// Parameters of a search.
 struct SpanSearch {
-  double time = 0;  ///< Undecided intervals longer than this are halved, s.
+  double time = 0;  ///< Undecided intervals longer than this time are halved, s.
   /// Undecided intervals whose upper bound exceeds the limit by more than this value are halved too.
   double value = 0;
   /// Largest number of intervals per quantity. Samples decide the remaining intervals.
@@ -83,11 +83,12 @@ struct FoundSpans {
 /// Returns the spans of `whole` in which each of the quantities is above `limit`.
 ///
 /// The bounds of an interval may prove that the quantity is below the limit or above it; otherwise the
-/// interval is halved. An undecided interval no longer than search.time is above the limit if its ends or
-/// middle are. Otherwise the interval is below the limit if its upper bound exceeds the limit by at most
-/// search.value. Hence a missed violation is shorter than half of search.time and exceeds the limit by at
-/// most search.value. The ends of spans are accurate to search.time. An interval that is too short to halve
-/// (`shortest_interval`) counts as above the limit, unless it is proved to be below.
+/// interval is halved. An undecided interval no longer than search.time counts as above the limit if the
+/// quantity is above the limit at its ends or middle. Any other undecided interval counts as below the limit
+/// if its upper bound exceeds the limit by at most search.value. Hence a missed violation is shorter than
+/// half of search.time and exceeds the limit by at most search.value. The ends of spans are accurate to
+/// search.time. An interval that is too short to halve (`shortest_interval`) counts as above the limit,
+/// unless it is proved to be below.
 ///
 /// Intervals are processed by decreasing length, and either all or none of the intervals of one length are
 /// evaluated. If the number of intervals reaches its limit, undecided times are therefore sampled evenly.
@@ -98,7 +99,7 @@ struct FoundSpans {
 [[nodiscard]] FoundSpans spans_above(double limit, const WatchedQuantity& quantity, Span whole,
                                      const SpanSearch& search);
 
-/// Intervals shorter than this are not halved, s.
+/// Intervals shorter than this time are not halved, s.
 inline constexpr double shortest_interval = 1e-12;
 
 /// Returns whether a span is too short to halve. At late times, the spacing of doubles is larger than

@@ -67,13 +67,13 @@ struct DistanceQuery {
 [[nodiscard]] double tube_distance(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                                    const DistanceQuery& query = {});
 
-/// Returns true if it proves that all pairs selected by `rule` are at least `distance`, m, apart. Returns
-/// false if it finds no proof within the limit on steps.
+/// Returns true if the function proves that all pairs selected by `rule` are at least `distance`, m, apart.
+/// Returns false if no proof is found within the limit on steps.
 [[nodiscard]] bool stay_apart(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                               double distance);
 
-/// Returns true if it proves that a pair selected by `rule` is nearer than `distance`, m. Returns false if it
-/// finds no proof within the limit on steps.
+/// Returns true if the function proves that a pair selected by `rule` is nearer than `distance`, m. Returns
+/// false if no proof is found within the limit on steps.
 [[nodiscard]] bool come_within(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                                double distance);
 
@@ -82,13 +82,13 @@ struct DistanceQuery {
 [[nodiscard]] double obstacle_distance(const SectionTube& tube, double from, const Obstacle& obstacle,
                                        const DistanceQuery& query);
 
-/// Returns true if it proves that the tube is at least `distance`, m, from the obstacle. Returns false if it
-/// finds no proof within the limit on steps.
+/// Returns true if the function proves that the tube is at least `distance`, m, from the obstacle. Returns
+/// false if no proof is found within the limit on steps.
 [[nodiscard]] bool stays_clear(const SectionTube& tube, double from, const Obstacle& obstacle,
                                double distance);
 
-/// Returns true if it proves that the tube is nearer to the obstacle than `distance`, m. Returns false if it
-/// finds no proof within the limit on steps.
+/// Returns true if the function proves that the tube is nearer to the obstacle than `distance`, m. Returns
+/// false if no proof is found within the limit on steps.
 [[nodiscard]] bool comes_within(const SectionTube& tube, double from, const Obstacle& obstacle,
                                 double distance);
 

@@ -33,14 +33,15 @@ struct Violation {
   double start = 0;       ///< Start of the span, s.
   double end = 0;         ///< End of the span, s.
   double worst_time = 0;  ///< Time of `value`, s.
-  /// Index of the section, 0 at the base; for a motor, that of its tendon's section.
+  /// Index of the section, 0 at the base; for a motor, the index of its tendon's section.
   std::optional<std::size_t> section = {};
   /// Index of the section that `section` touches; 0 at the base.
   std::optional<std::size_t> other_section = {};
-  std::string name = {};       ///< Name of the obstacle, the motor's axis or the task.
-  double value = 0;            ///< Worst value in the span, in the hazard's unit.
-  double limit = 0;            ///< Limit, in the hazard's unit.
-  bool is_of_stretch = false;  ///< Whether a jump is one of the stretch (a factor) instead of the bend (rad).
+  std::string name = {};  ///< Name of the obstacle, the motor's axis or the task.
+  double value = 0;       ///< Worst value in the span, in the hazard's unit.
+  double limit = 0;       ///< Limit, in the hazard's unit.
+  bool is_of_stretch =
+      false;  ///< Whether a jump is a jump of the stretch (a factor) instead of the bend (rad).
   std::optional<Eigen::Vector3d> target = {};  ///< Target that the tip does not reach, in W, m.
 
   /// Returns "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg". The times are formatted by span_text()

@@ -17,7 +17,8 @@ class AxisMotion {
   /// Backlash: the load's position is within motor + [low, high]. The load stays at rest while the motor
   /// moves through this range.
   struct Backlash {
-    double low = 0, high = 0;  ///< Bounds of load minus motor, with low <= 0 <= high.
+    double low = 0,
+           high = 0;  ///< Bounds of the difference of load and motor position, with low <= 0 <= high.
   };
 
   /// Creates an axis whose motor and load rest at `start`. A command takes effect `delay` s after it was

@@ -64,8 +64,8 @@ void BendMotion::halt(double time) { go(time, at(time), 0); }
 void BendMotion::go(double time, ArmState target, double duration) {
   if (!std::isfinite(time) || time < plans_.back().start)
     throw std::invalid_argument(
-        fmt::format("a command at {} s: expected a time that is not before that of the last command, {} s",
-                    time, plans_.back().start));
+        fmt::format("a command at {} s: expected a time that is not before the last command, {} s", time,
+                    plans_.back().start));
   Plan plan{time, at(time), std::move(target), {}};
   for (std::size_t i = 0; i < sections_.size(); ++i)
     plan.durations.push_back(

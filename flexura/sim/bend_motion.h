@@ -8,9 +8,9 @@
 namespace flexura {
 
 /// Motion of an arm without drives, whose sections bend as commanded. Each section moves at constant rates to
-/// its target in the given time, or at its largest bend rate if that time is too short. The section's stretch
-/// takes this time too. Like AxisMotion, the motion is a function of time and of the commands up to this
-/// time.
+/// its target in the given time, or at its largest bend rate if the given time is too short. The section's
+/// stretch takes the same time as its bend. Like AxisMotion, the motion is a function of time and of the
+/// commands up to this time.
 class BendMotion {
  public:
   /// Starts at rest in the state `start`. Queries are allowed back to `horizon` s before the last command.

@@ -18,7 +18,7 @@ struct DeepStart {
 /// Contact pushes towards the nearest side of the obstacle, so it may push such an arm further in
 /// (docs/mechanics.md, "Contact"). Returns std::nullopt if there is no such point or no initial equilibrium,
 /// or if the true arm has no inertia or no contact. `model` and `truth` are as for SimulatedRig. Throws
-/// std::invalid_argument if one of them is not a valid arm.
+/// std::invalid_argument if `model` or `truth` has an invalid arm.
 [[nodiscard]] std::optional<DeepStart> deep_start(const RigConfig& model, const RigConfig& truth);
 
 }  // namespace flexura

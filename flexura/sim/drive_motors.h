@@ -16,9 +16,9 @@ namespace flexura {
 class DriveMotors {
  public:
   /// Starts at rest at `start`, microsteps. At the start, the motors have taken up the backlash for pulling
-  /// in. Backlash and directions are those of `drive`. Limits, rates and accelerations are those of the
-  /// motors of `real`. Queries are allowed back to `horizon` s before the last command. `drive`, `real` and
-  /// `start` must have equal numbers of axes.
+  /// in. The motors have the backlash and directions of `drive`. The motors have the limits, rates and
+  /// accelerations of the motors of `real`. Queries are allowed back to `horizon` s before the last command.
+  /// `drive`, `real` and `start` must have equal numbers of axes.
   DriveMotors(const Drive& drive, const Drive& real, const std::vector<std::int64_t>& start, double horizon);
 
   /// Commands a motion that begins at `time` and ends at `positions`, one per axis, after `duration` s.

@@ -48,8 +48,8 @@ class Plant {
   Plant(const Plant&) = delete;
   Plant& operator=(const Plant&) = delete;
 
-  /// Commands a motion to u that begins at `time`, s, and takes `duration` s. If this is too short, the
-  /// motion is as fast as possible. `time` must not be before the last command.
+  /// Commands a motion to u that begins at `time`, s, and takes `duration` s. If this duration is too short,
+  /// the motion is as fast as possible. `time` must not be before the last command.
   virtual void command(double time, const Eigen::VectorXd& u, double duration) = 0;
   /// Commands a stop at `time`, s, as fast as possible. `time` must not be before the last command.
   virtual void halt(double time) = 0;

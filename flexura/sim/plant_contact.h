@@ -14,7 +14,8 @@ struct PlantContact {
   double depth = 0;                                 ///< Penetration depth, m.
   double normal_force = 0;                          ///< Force normal to the surface, N.
   bool sticks = false;  ///< Whether the contact sticks, which means that it does not slide.
-  /// Whether the arm's centerline is inside the obstacle. Then the direction of the force is not meaningful.
+  /// Whether the arm's centerline is inside the obstacle. If the centerline is inside, the direction of the
+  /// force is not meaningful.
   bool is_deep = false;
 };
 

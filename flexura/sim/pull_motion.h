@@ -6,9 +6,9 @@
 
 namespace flexura {
 
-/// Tendon displacements over time, in addition to those by the bends. Each tendon moves to its target at a
-/// constant rate, and all arrive at the same time. Like BendMotion, the motion is a function of time and of
-/// the commands up to this time.
+/// Tendon displacements over time, in addition to the displacements that belong to the bends. Each tendon
+/// moves to its target at a constant rate, and all arrive at the same time. Like BendMotion, the motion is a
+/// function of time and of the commands up to this time.
 class PullMotion {
  public:
   /// Starts with all displacements 0. `tendons`: number of tendons. Queries are allowed back to `horizon` s

@@ -150,7 +150,7 @@ std::string truth_problem(const RigConfig& model, const RigConfig& truth) {
     if (one.width != other.width || one.height != other.height || one.bits != other.bits ||
         one.pixels != other.pixels)
       return fmt::format(
-          "the images of the true camera {} differ in size or kind from those of the model's camera",
+          "the images of the true camera {} differ in size or kind from the images of the model's camera",
           model.cameras[i].name);
   }
   return "";

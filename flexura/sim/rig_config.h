@@ -12,21 +12,21 @@
 
 namespace flexura {
 
-/// A rig as described by the tables of a file. Such a rig is either the model that tasks use, or the truth.
+/// A rig as described by the tables of a file. This rig is either the model that tasks use, or the truth.
 struct RigConfig {
   ArmConfig arm;
   /// Drive of the arm; missing: the sections bend as commanded, within their own rates.
   std::optional<DriveConfig> drive;
-  std::vector<CameraConfig> cameras;  ///< Cameras. Tasks number them in this order.
+  std::vector<CameraConfig> cameras;  ///< Cameras. Tasks number the cameras in this order.
   std::vector<ObstacleConfig> obstacles = {};
 };
 
-/// Returns the document with the values of its table [truth] instead of the others. The result describes the
-/// simulated world and has the format of the model. Tables are merged key by key, even if the keys have
-/// different units. Arrays of tables are merged entry by entry: by `name` if entries have names, otherwise by
-/// position. An array without names whose length differs replaces the original. All other values are
-/// replaced. Without [truth], returns the document itself. Throws InputError if [truth] is not a table, or
-/// names a missing entry.
+/// Returns the document with the values of its table [truth] instead of the values of the model. The result
+/// describes the simulated world and has the format of the model. Tables are merged key by key, even if the
+/// keys have different units. Arrays of tables are merged entry by entry: by `name` if entries have names,
+/// otherwise by position. An array without names whose length differs replaces the original. All other values
+/// are replaced. Without [truth], returns the document itself. Throws InputError if [truth] is not a table,
+/// or names a missing entry.
 [[nodiscard]] Node truth_of(Node document);
 
 /// Returns why `truth` and `model` do not match, or "" if they do. Both rigs must have equal kinds of arms

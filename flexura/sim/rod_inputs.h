@@ -20,8 +20,8 @@ namespace flexura {
 ///
 /// With a drive, the spools pull the tendons in, starting from the pretension. A motor whose load exceeds its
 /// pull-out torque loses the steps of one turn of its field at a time. Without a drive, tendon displacements
-/// are those of arcs with the commanded bends, plus those of pull(). Commanded stretches are factors on the
-/// sections' lengths.
+/// are the displacements of arcs with the commanded bends, plus the displacements of pull(). Commanded
+/// stretches are factors on the sections' lengths.
 class RodInputs {
  public:
   /// Throws std::invalid_argument if the truth has no rod, if it has a drive but not one tendon per axis, or
@@ -30,8 +30,8 @@ class RodInputs {
 
   /// Implements Plant::command().
   void command(double time, const Eigen::VectorXd& u, double duration);
-  /// Implements Plant::halt(). The following functions up to pulled() also implement the functions of Plant
-  /// with their names.
+  /// Implements Plant::halt(). The following functions, up to pulled(), implement the functions of Plant that
+  /// have equal names.
   void halt(double time);
   /// Pulls the tendons individually.
   std::optional<ArmState> pull(double time, const std::vector<double>& displacements, double duration);

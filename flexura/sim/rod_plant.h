@@ -10,7 +10,8 @@
 
 namespace flexura {
 
-/// A plant whose arm is an elastic rod with the inputs of RodInputs. Derived classes compute its response.
+/// A plant whose arm is an elastic rod with the inputs of RodInputs. Derived classes compute the response of
+/// the arm.
 class RodPlant : public Plant {
  public:
   void command(double time, const Eigen::VectorXd& u, double duration) override;

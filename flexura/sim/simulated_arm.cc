@@ -19,7 +19,8 @@ void require_same_kind(const ArmSetup& model, const ArmSetup& truth) {
   if (model.arm.sections.size() != truth.arm.sections.size() ||
       model.drive.has_value() != truth.drive.has_value() ||
       (model.drive && model.drive->axes.size() != truth.drive->axes.size()))
-    throw std::invalid_argument("the sections or axes of the true arm do not match those of the model");
+    throw std::invalid_argument(
+        "the sections or axes of the true arm do not match the sections or axes of the model");
 }
 
 }  // namespace

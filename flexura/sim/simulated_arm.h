@@ -20,7 +20,7 @@ namespace flexura {
 /// only on the commands and the rates of the sections.
 class SimulatedBends : public ArmPort {
  public:
-  /// The arguments are those of SimulatedArm. The plant must outlive this object.
+  /// The arguments are as for SimulatedArm. The plant must outlive this object.
   SimulatedBends(const ArmSetup& model, const ArmSetup& truth, Plant& plant, const ClockPort& clock,
                  double horizon);
 
@@ -54,9 +54,9 @@ class SimulatedArm : public ArmPort {
   CommandOutcome halt() override;
   Outcome<ArmReading> read() override;
 
-  /// Pulls each tendon in to the given displacement, m. With a drive, the axes do so; without a drive,
-  /// Plant::pull() does. `duration` is as for command(). Refuses the command if the arm has no tendons to
-  /// pull, or unless there is one finite displacement per tendon.
+  /// Pulls each tendon in to the given displacement, m. With a drive, the axes pull the tendons; without a
+  /// drive, Plant::pull() pulls the tendons. `duration` is as for command(). Refuses the command if the arm
+  /// has no tendons to pull, or unless there is one finite displacement per tendon.
   CommandOutcome pull(const std::vector<double>& displacements, double duration);
 
   /// Returns the true bends and stretches that the drives impose; not for algorithms. `time`, s, must be at

@@ -17,7 +17,7 @@ namespace flexura {
 /// Data that a TakePicture function needs to render a frame.
 struct Shot {
   std::size_t camera = 0;  ///< Index of the camera in the rig.
-  /// Number of the frame. Together with seed and camera it determines the noise.
+  /// Number of the frame. Seed, camera and frame number together determine the noise.
   std::int64_t frame = 0;
   std::uint64_t seed = 0;                    ///< Seed of the run.
   double start = 0;                          ///< Start of the exposure of the first row, s.
@@ -30,18 +30,18 @@ struct Shot {
 /// Renders the image of a shot with the sensor's size, channels and bits. Equal shots must give equal images.
 using TakePicture = std::function<Picture(const Shot&)>;
 
-/// Number of frames that `SimulatedCamera::newest` examines, beginning with the newest. If all of them were
-/// lost, it returns no frame.
+/// Number of frames that `SimulatedCamera::newest` examines, beginning with the newest. If all these frames
+/// were lost, `newest` returns no frame.
 inline constexpr int frames_kept = 16;
 
 /// Returns the longest time after the start of its exposure at which a frame can be requested, s. Views and
 /// backbones must be available for this time in the past.
 [[nodiscard]] double frame_horizon(const SensorConfig& sensor);
 
-/// A camera that exposes frames at its frame rate from time 0, delays them and loses some. A SimulatedCamera
-/// renders only requested frames. Several cameras of a rig can be queried at once, each from its own thread,
-/// if the TakePicture functions are thread-safe. Meanwhile, no thread may wait for the clock or send
-/// commands.
+/// A camera that exposes frames at its frame rate from time 0, delays frames and loses some frames. A
+/// SimulatedCamera renders only requested frames. Several cameras of a rig can be queried at once, each from
+/// its own thread, if the TakePicture functions are thread-safe. Meanwhile, no thread may wait for the clock
+/// or send commands.
 class SimulatedCamera : public CameraPort {
  public:
   /// `shot` describes the content of the frames. The camera sets its members `frame`, `start` and

@@ -69,7 +69,7 @@ class SimulatedHead : public HeadPort {
 };
 
 /// A stage that moves along the mount's axes (right, down, forward), m. The motors of a stage are modelled as
-/// those of SimulatedHead.
+/// the motors of a SimulatedHead.
 class SimulatedStage : public StagePort {
  public:
   /// Creates the stage of the true `camera`. The arguments are as for SimulatedHead.

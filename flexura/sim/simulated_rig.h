@@ -55,7 +55,8 @@ class SimulatedRig {
   /// `truth` is the simulated world. Arm and drive of `model` convert commanded shapes into motor positions.
   /// The counters of heads and stages start at the model's initial camera positions. `make_plant` creates the
   /// true arm, which advances with the rig's clock. Throws std::invalid_argument with the text of
-  /// truth_problem() if truth and model do not match. Also throws it if an arm or a camera is invalid.
+  /// truth_problem() if truth and model do not match. Also throws std::invalid_argument if an arm or a camera
+  /// is invalid.
   SimulatedRig(const RigConfig& model, const RigConfig& truth, const TakePicture& take_picture,
                std::uint64_t seed, const MakePlant& make_plant = true_plant);
 

@@ -13,9 +13,9 @@
 namespace flexura {
 
 /// A plant whose arm is an elastic rod without inertia (docs/mechanics.md). The arm is always in equilibrium
-/// under tendons, weight and loads. If there are several equilibria, the arm is in the one that it reaches
-/// along its path. The path is computed in steps of `step` s from time 0. Throws SimulationError if the arm
-/// has no equilibrium.
+/// under tendons, weight and loads. If there are several equilibria, the arm is in the equilibrium that it
+/// reaches along its path. The path is computed in steps of `step` s from time 0. Throws SimulationError if
+/// the arm has no equilibrium.
 class StaticPlant : public RodPlant {
  public:
   static constexpr double step = 0.02;

@@ -14,8 +14,8 @@ namespace flexura {
 /// Returns the bends and stretches whose arc_displacements() are nearest to `displacements` by least squares.
 /// Stretches vary only in sections whose limits allow it. The displacements may not determine some
 /// combinations of bends and stretches, or may determine them a hundred times less accurately than others.
-/// These combinations remain as near as possible to those of the straight arm. Limits are not applied. Throws
-/// std::invalid_argument unless there is one finite displacement per tendon.
+/// These combinations remain as near as possible to their values in the straight arm. Limits are not applied.
+/// Throws std::invalid_argument unless there is one finite displacement per tendon.
 [[nodiscard]] ArmState nearest_arcs(const Rod& rod, const Arm& arm, const std::vector<double>& displacements);
 
 /// A tendon that can be pulled individually.

@@ -15,8 +15,8 @@ namespace flexura {
 /// thread per camera.
 class ThreadPool {
  public:
-  using Job = std::function<void(std::size_t)>;  ///< Job function. The argument of the function is the number
-                                                 ///< of the job.
+  /// Job function. The argument of the function is the number of the job.
+  using Job = std::function<void(std::size_t)>;
 
   /// Creates a pool of `threads` >= 1 threads, including the caller's thread.
   explicit ThreadPool(std::size_t threads);

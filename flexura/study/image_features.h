@@ -11,9 +11,9 @@
 
 namespace flexura {
 
-/// Names of the features that a study measures in the image of its target. All features except the last one
-/// are lengths in px. The last one is the ratio of the axes of the circle's ellipse. The names of edges and
-/// of the circle's top refer to an upright camera that faces the target.
+/// Names of the features that a study measures in the image of its target. All features except the last
+/// feature are lengths in px. The last feature is the ratio of the axes of the circle's ellipse. The names of
+/// edges and of the circle's top refer to an upright camera that faces the target.
 inline constexpr std::array<std::string_view, 9> feature_names{
     "top",
     "bottom",

@@ -32,8 +32,9 @@ struct ImageStudy {
   std::vector<double> values;  ///< Values of the parameter, in base units.
   std::vector<TargetImage>
       images;  ///< Image of the target for each value, computed by the projection formulas.
-  std::vector<StudyColumn> columns;  ///< Features from the projection formulas, from the renderer's geometry,
-                                     ///< and optionally measured in pictures.
+  /// Features from the projection formulas, from the renderer's geometry, and optionally measured in
+  /// pictures.
+  std::vector<StudyColumn> columns;
 
   /// Returns whether the whole target is inside the image for the value i.
   [[nodiscard]] bool in_image(std::size_t i) const;
@@ -43,7 +44,7 @@ struct ImageStudy {
   /// A difference is infinite if only one of the two has a value.
   [[nodiscard]] std::array<double, 2> largest_difference() const;
   /// Number of lengths measured in pictures, and the root mean square of their differences from the formulas,
-  /// px. Both are 0 without measurements.
+  /// px. Both numbers are 0 without measurements.
   struct Measured {
     std::size_t count = 0;
     double rms = 0;

@@ -160,8 +160,9 @@ const Table<StudyTask>& fields_of(const StudyTask*) {
                              "last value.",
                   .range = between(2, 10000)})
           .field("measure", &StudyTask::measure,
-                 {.meaning = "Whether the target's square is also rendered and measured in pictures. The "
-                             "result is a third column. This takes 0.1 s of computing time per value."})
+                 {.meaning =
+                      "Whether the target's square is also rendered and measured in pictures. The "
+                      "result is a third column. The measurement takes 0.1 s of computing time per value."})
           .field("target", &StudyTask::target, {.meaning = "Target that the camera sees."});
   return table;
 }

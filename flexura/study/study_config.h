@@ -61,7 +61,7 @@ const Table<VaryConfig>& fields_of(const VaryConfig*);
 const Table<StudyTargetConfig>& fields_of(const StudyTargetConfig*);
 const Table<StudyTask>& fields_of(const StudyTask*);
 
-/// Returns the parameters for which `vary` has values. A valid study has exactly one.
+/// Returns the parameters for which `vary` has values. A valid study has exactly one parameter.
 [[nodiscard]] std::vector<Variation> variations(const VaryConfig& vary);
 
 /// Returns the camera of a study; null if no camera has the study's camera name.

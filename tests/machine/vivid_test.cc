@@ -308,18 +308,18 @@ TEST_F(Vivid, SetsTheGainAndSwitchesTheAutomaticOff) {
 TEST_F(Vivid, SaysWhatTheCameraLacks) {
   V4l2Config wrong = config();
   wrong.gain = 300;
-  EXPECT_THAT(fault_with(wrong, camera()), HasSubstr("it set 255 instead of gain = 300"));
+  EXPECT_THAT(fault_with(wrong, camera()), HasSubstr("the camera set 255 instead of gain = 300"));
   wrong = config();
   wrong.exposure = 0.01;
-  EXPECT_THAT(fault_with(wrong, camera()), HasSubstr("its exposure cannot be set: remove exposure"));
+  EXPECT_THAT(fault_with(wrong, camera()), HasSubstr("the camera's exposure cannot be set: remove exposure"));
   CameraConfig small = camera();
   small.sensor.width = 100, small.sensor.height = 100;
-  EXPECT_THAT(fault_with(config(), small), HasSubstr("it offers 320 x 180"));
+  EXPECT_THAT(fault_with(config(), small), HasSubstr("the camera offers 320 x 180"));
   EXPECT_THAT(fault_with(config(V4l2Format::mjpeg), camera()),
-              HasSubstr("it has no format with 320 x 180 pixels"));
+              HasSubstr("the camera has no format with 320 x 180 pixels"));
   const auto head = V4l2Head::open({.device = device_.path()}, "front", clock_);
   ASSERT_FALSE(head);
-  EXPECT_THAT(head.fault()->what, HasSubstr("it has no absolute pan, tilt or zoom"));
+  EXPECT_THAT(head.fault()->what, HasSubstr("the camera has no absolute pan, tilt or zoom"));
 }
 
 TEST_F(Vivid, SaysThatAnotherProgramUsesTheCamera) {

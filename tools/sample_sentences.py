@@ -54,6 +54,8 @@ def docstrings(text):
 
 
 def literals(text):
+    """Yields string literals, with the parts of one joined."""
+    text = re.sub(r'"\s*\n\s*"', '', text)
     for match in re.finditer(r'"((?:\\.|[^"\\\n])*)"', text):
         yield match.group(1)
 

@@ -100,7 +100,8 @@ TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"negative lost travel", drive_with("gear = 10", "friction_travel_mm = -1"),
        "x.toml:12:22: drive.spool.friction_travel_mm = -1: expected a number from 0 mm"},
       {"lost travel beyond reason", drive_with("gear = 10", "friction_travel_mm = 8"),
-       "drive.tendon[0]: loses a travel of 0.008 m per radian by friction (spool.friction_travel): expected at "
+       "drive.tendon[0]: loses a travel of 0.008 m per radian by friction (spool.friction_travel): expected "
+       "at "
        "most half of its radius, 0.0075 m"},
       {"misspelt table", drive_with("[drive.spool]", "[drive.spools]"),
        "x.toml:11:8: drive.spools: unknown key; did you mean \"spool\"?"},

@@ -253,15 +253,18 @@ std::string CommandLimiter::breach_of_motors(const std::vector<ArmState>& way) c
   for (std::size_t k = 0; k <= way.size(); ++k) {
     const ArmState& to = way[std::min(k, way.size() - 1)];
     const MotorStep now = motor_step(*from, before.motors, to);
+    std::vector<double> wraps;
+    if (drive.loses_travel()) wraps = tendon_wraps(arm_, drive, to);
     for (std::size_t i = 0; i < drive.axes.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       const StepperMotor& motor = drive.axes[i].motor;
       const auto say = [&](const char* what) {
         return fmt::format("motor {}: {}", drive.axis_name(i), what);
       };
-      // A stop is a hard limit: the list has to stay within it with backlash and rounding. If the arm starts
-      // nearer to it than that, it must not get nearer.
-      const double beyond = drive.axes[i].backlash_steps() + 0.5;
+      // A stop is a hard limit: the list has to stay within it with backlash, friction and rounding. If the
+      // arm starts nearer to it than that, it must not get nearer.
+      const double friction = wraps.empty() ? 0 : drive.axes[i].friction_steps(wraps[i]) / 2,
+                   beyond = drive.axes[i].backlash_steps() + friction + 0.5;
       const double already = std::min(std::abs(before.motors[at]), motor.max_position);
       if (!(std::abs(now.motors[at]) <= std::max(motor.max_position - beyond, already)))
         return say("position");

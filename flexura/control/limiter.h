@@ -53,8 +53,8 @@ struct LimiterFault {
 /// Limits commands between a law and an arm's drives. Whatever the law's command, the command that is sent:
 ///   - Is finite and within the arm's limits of bends, stretches and folding. The sent command changes within
 ///     the rate limits of bends and stretches.
-///   - Respects the motors' limits of speed, step rate and acceleration, without backlash and rounding.
-///     Respects the motors' limits of position, with backlash and rounding.
+///   - Respects the motors' limits of speed, step rate and acceleration, without backlash, friction and
+///     rounding. Respects the motors' limits of position, with backlash, friction and rounding.
 ///   - Allows the arm to brake to rest within all these limits. With `looks_ahead`, this braking path is free
 ///     of contact. The limiter keeps the braking path and follows it if no other command is allowed
 ///     (docs/control.md, "The limiter").

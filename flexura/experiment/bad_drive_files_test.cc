@@ -97,6 +97,12 @@ TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"no gear", drive_with("gear = 10", "gear = 0"), "drive.spool.gear = 0: expected a number above 0"},
       {"negative play", drive_with("gear = 10", "backlash_deg = -1"),
        "x.toml:12:16: drive.spool.backlash_deg = -1: expected a number from 0 deg"},
+      {"negative lost travel", drive_with("gear = 10", "friction_travel_mm = -1"),
+       "x.toml:12:22: drive.spool.friction_travel_mm = -1: expected a number from 0 mm"},
+      {"lost travel beyond reason", drive_with("gear = 10", "friction_travel_mm = 8"),
+       "drive.tendon[0]: loses a travel of 0.008 m per radian by friction (spool.friction_travel): expected "
+       "at "
+       "most half of its radius, 0.0075 m"},
       {"misspelt table", drive_with("[drive.spool]", "[drive.spools]"),
        "x.toml:11:8: drive.spools: unknown key; did you mean \"spool\"?"},
       {"no controller", drive_with("radius_mm = 15", "axes_per_controller = 0"),

@@ -23,6 +23,16 @@ void require_one_an_axis(std::size_t axes, std::size_t given) {
 // Positive values pull in; a reversed motor counts the other way.
 double sense(const Axis& axis) { return axis.reversed ? -1.0 : 1.0; }
 
+// Returns half of the travel that friction takes, microsteps.
+double half_travel(const Axis& axis, const TendonDisplacements& displacements, std::size_t index) {
+  return displacements.wraps.empty() ? 0.0 : axis.friction_steps(displacements.wraps[index]) / 2;
+}
+
+void require_fit_of(std::size_t axes, const TendonDisplacements& displacements) {
+  require_one_an_axis(axes, displacements.pulled.size());
+  if (!displacements.wraps.empty()) require_one_an_axis(axes, displacements.wraps.size());
+}
+
 }  // namespace
 
 std::vector<double> motor_positions(const Drive& drive, const TendonDisplacements& displacements) {
@@ -49,12 +59,24 @@ MotorCommander::MotorCommander(const Drive& drive, const TendonDisplacements& st
     : axes_(drive.axes),
       sides_(drive.axes.size()),
       positions_(drive.axes.size(), 0),
-      targets_(drive.axes.size(), 0.0) {
+      targets_(drive.axes.size(), 0.0),
+      taken_up_(drive.axes.size(), 0.0) {
+  require_fit_of(axes_.size(), start);
   const std::vector<double> exact = motor_positions(drive, start);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    sides_[i].farthest = sense(axes_[i]) * exact[i];
-    command(i, sides_[i].farthest);
+    Sides& sides = sides_[i];
+    sides.tendon.farthest = sense(axes_[i]) * exact[i];
+    sides.spool.farthest = sides.tendon.farthest + half_travel(axes_[i], start, i);
+    command(i, sides.spool.farthest);
   }
+}
+
+bool MotorCommander::Side::follow(double target) {
+  const double ahead = letting_out ? farthest - target : target - farthest;
+  const bool reverses = ahead < -rounding;
+  if (reverses) letting_out = !letting_out;
+  if (ahead > 0 || reverses) farthest = target;
+  return reverses;
 }
 
 void MotorCommander::command(std::size_t axis, double target) {
@@ -68,14 +90,15 @@ void MotorCommander::command(std::size_t axis, double target) {
 }
 
 void MotorCommander::follow(const TendonDisplacements& desired) {
-  require_one_an_axis(axes_.size(), desired.pulled.size());
+  require_fit_of(axes_.size(), desired);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const double target = desired.pulled[i] * axes_[i].microsteps_a_metre();
-    Side& side = sides_[i];
-    const double ahead = side.letting_out ? side.farthest - target : target - side.farthest;
-    if (ahead < -rounding) side.letting_out = !side.letting_out;
-    if (ahead > 0 || ahead < -rounding) side.farthest = target;
-    command(i, side.letting_out ? target - axes_[i].backlash_steps() : target);
+    const double target = desired.pulled[i] * axes_[i].microsteps_a_metre(),
+                 half = half_travel(axes_[i], desired, i), backlash = axes_[i].backlash_steps();
+    auto& [tendon, spool] = sides_[i];
+    taken_up_[i] = tendon.follow(target) ? 2 * half : 0;
+    const double wound = tendon.letting_out ? target - half : target + half;
+    if (spool.follow(wound)) taken_up_[i] += backlash;
+    command(i, spool.letting_out ? wound - backlash : wound);
   }
 }
 

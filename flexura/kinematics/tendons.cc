@@ -138,7 +138,20 @@ TendonDisplacements tendon_displacements(const Arm& arm, const Drive& drive, con
     const Passage& sum = sums[tendon.section];
     result.pulled.push_back((straight[tendon.section] - sum.centre) + tendon.offset().dot(sum.turn));
   }
+  if (drive.loses_travel()) result.wraps = tendon_wraps(arm, drive, state);
   return result;
+}
+
+std::vector<double> tendon_wraps(const Arm& arm, const Drive& drive, const ArmState& state) {
+  require_fit(arm, drive, state.bends.size(), state.stretches.size());
+  std::vector<double> sums;
+  sums.reserve(state.bends.size());
+  for (const Eigen::Vector2d& bend : state.bends)
+    sums.push_back((sums.empty() ? 0.0 : sums.back()) + bend.norm());
+  std::vector<double> wraps;
+  wraps.reserve(drive.tendons.size());
+  for (const Tendon& tendon : drive.tendons) wraps.push_back(sums[tendon.section]);
+  return wraps;
 }
 
 Eigen::MatrixXd tendon_jacobian(const Arm& arm, const Drive& drive, const ArmState& state) {

@@ -18,9 +18,13 @@ namespace flexura {
 /// Returns the displacement of each tendon, m: the tendon's length along the straight, unstretched arm minus
 /// its length in `state`. In a continuous channel, the length of a tendon within a section is exactly length
 /// * stretch - offset . bend. With guide disks that divide the section into n pieces, the length is
-/// sinc(|bend| / 2n) times as large.
+/// sinc(|bend| / 2n) times as large. Includes the wraps if the drive loses travel by friction.
 [[nodiscard]] TendonDisplacements tendon_displacements(const Arm& arm, const Drive& drive,
                                                        const ArmState& state);
+
+/// Returns the angle by which each tendon turns between the arm's base and its end, rad: the sum of |bend| of
+/// the sections that it passes.
+[[nodiscard]] std::vector<double> tendon_wraps(const Arm& arm, const Drive& drive, const ArmState& state);
 
 /// Returns the Jacobian of the displacements with respect to (bend_x, bend_y, stretch) of every section: one
 /// row per tendon, three columns per section. In a continuous channel, the Jacobian is equal in all states,

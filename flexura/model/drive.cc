@@ -30,8 +30,17 @@ double Axis::backlash_steps() const {
   return motor.resolution() * spool.gear * (spool.backlash / (2 * std::numbers::pi));
 }
 
+double Axis::friction_steps(double wrap) const {
+  return spool.friction_travel.value_or(0) * wrap * microsteps_a_metre();
+}
+
 double Axis::max_cable_speed() const {
   return std::min(motor.max_step_rate / microsteps_a_metre(), motor.max_speed / spool.gear * spool.radius);
+}
+
+bool Drive::loses_travel() const {
+  return std::ranges::any_of(axes,
+                             [](const Axis& axis) { return axis.spool.friction_travel.value_or(0) > 0; });
 }
 
 std::string Drive::axis_name(std::size_t axis) const {

@@ -15,6 +15,9 @@ namespace flexura {
 /// straight, unstretched arm. The type distinguishes displacements from tensions.
 struct TendonDisplacements {
   std::vector<double> pulled;  ///< Displacement of each tendon, m.
+  /// Angle by which each tendon turns between the arm's base and its end, rad. It is only needed to
+  /// compensate friction. Empty: friction is not compensated.
+  std::vector<double> wraps = {};
 };
 
 /// A cable parallel to the backbone, from the arm's base to the end of one section, through all sections in
@@ -59,6 +62,9 @@ struct Spool {
   double radius = 0.01;  ///< Distance from the spool's axis to the middle of the cable, m; > 0.
   double gear = 1;       ///< Gear ratio: revolutions of the motor per revolution of the spool; > 0.
   double backlash = 0;   ///< Backlash between motor and spool, measured at the spool, rad; >= 0.
+  /// Cable length that the spool winds without effect on the arm after a reversal, because of friction along
+  /// a tendon that stretches: metres per radian by which the tendon turns; >= 0. Default: 0.
+  std::optional<double> friction_travel = {};
 };
 
 /// A motor with its spool, which pulls one tendon.
@@ -71,6 +77,9 @@ struct Axis {
   [[nodiscard]] double microsteps_a_metre() const;
   /// Returns the backlash in microsteps; >= 0, rarely an integer.
   [[nodiscard]] double backlash_steps() const;
+  /// Returns the travel lost by friction after a reversal, in microsteps, for a tendon that turns by `wrap`,
+  /// rad; >= 0.
+  [[nodiscard]] double friction_steps(double wrap) const;
   /// Returns the motor torque, N m, that balances a tension, N; without losses.
   [[nodiscard]] double torque(double tension) const { return tension * spool.radius / spool.gear; }
   /// Returns the largest cable speed that motor and controller allow, m/s.
@@ -90,6 +99,8 @@ struct Drive {
   /// N; >= 0.
   double pretension = 0;
 
+  /// Returns whether friction takes travel from any tendon (Spool::friction_travel).
+  [[nodiscard]] bool loses_travel() const;
   /// Returns "CONTROLLER.AXIS", both counted from 1: the fifth axis is "2.1" if a controller has four.
   [[nodiscard]] std::string axis_name(std::size_t axis) const;
 };

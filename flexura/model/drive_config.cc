@@ -61,8 +61,16 @@ void check_positions(const Drive& drive, const ArmConfig& arm, const std::string
   for (const Section& section : arm.section) length += section.length * max_stretch;
   const double turns = 2 * angle_range.max * static_cast<double>(arm.section.size());
   for (std::size_t i = 0; i < drive.axes.size(); ++i) {
+    const double most_travel = drive.tendons[i].radius / 2,
+                 travel = drive.axes[i].spool.friction_travel.value_or(0);
+    if (travel > most_travel)
+      reader.problem_at(fmt::format("{}[{}]", path, i),
+                        fmt::format("loses a travel of {:.6g} m per radian by friction "
+                                    "(spool.friction_travel): expected at most half of its "
+                                    "radius, {:.6g} m",
+                                    travel, most_travel));
     const double farthest = (length + turns * drive.tendons[i].radius) * drive.axes[i].microsteps_a_metre() +
-                            drive.axes[i].backlash_steps();
+                            drive.axes[i].backlash_steps() + drive.axes[i].friction_steps(turns);
     if (farthest < max_position) continue;
     reader.problem_at(fmt::format("{}[{}]", path, i),
                       fmt::format("needs up to {:.1e} microsteps: expected less than {:.1e}; use a larger "
@@ -145,7 +153,14 @@ const Table<Spool>& fields_of(const Spool*) {
                  {.meaning = "Backlash between motor and spool, as an angle of the spool: after a reversal, "
                              "the first rotation by this angle does not move the cable.",
                   .unit = Unit::radian,
-                  .range = between(0, 10)});
+                  .range = between(0, 10)})
+          .field("friction_travel", &Spool::friction_travel,
+                 {.meaning = "Cable that the spool winds without effect on the arm after a reversal, because "
+                             "the tendon has friction and stretches: length per radian of bend that the "
+                             "tendon passes. At most half of the tendon's `radius`.",
+                  .unit = Unit::metre,
+                  .range = between(0, 1e3),
+                  .default_text = "0: friction is not compensated"});
   return table;
 }
 

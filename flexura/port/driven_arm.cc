@@ -43,7 +43,7 @@ std::vector<std::int64_t> nominal_positions(const Arm& arm, const Drive& drive, 
 
 std::vector<double> displacements_at_zero(const Arm& arm, const Drive& drive, const ArmState& state,
                                           const std::vector<std::int64_t>& positions) {
-  std::vector<double> result = tendon_displacements(arm, drive, state).pulled;
+  std::vector<double> result = FrictionPlay(arm, drive, state).spools();
   for (std::size_t i = 0; i < result.size(); ++i) {
     const Axis& axis = drive.axes.at(i);
     result[i] -= sense_of(axis) * static_cast<double>(positions.at(i)) / axis.microsteps_a_metre();
@@ -74,7 +74,8 @@ DrivenArm::DrivenArm(DrivePort& port, const Arm& arm, const Drive& drive, const 
       arm_(arm),
       drive_(drive),
       commander_(drive, tendon_displacements(arm, drive, initial)),
-      zero_(displacements_at_zero(arm, drive, initial, commander_.positions())) {
+      zero_(displacements_at_zero(arm, drive, initial, commander_.positions())),
+      play_(arm, drive, initial) {
   if (port.quantity() == DriveQuantity::tendon_tensions)
     throw std::invalid_argument(
         "a drive with tension targets cannot move this arm, because no model converts tensions to shapes: "
@@ -89,11 +90,17 @@ DrivenArm::DrivenArm(DrivePort& port, const Arm& arm, const Drive& drive, const 
 CommandOutcome DrivenArm::command(const ArmState& state, double duration) {
   if (const std::string problem = command_problem(arm_, state, duration); !problem.empty())
     return arm_refuses(problem);
-  return pull(tendon_displacements(arm_, drive_, state).pulled, duration);
+  return send(tendon_displacements(arm_, drive_, state), duration);
 }
 
 CommandOutcome DrivenArm::pull(const std::vector<double>& displacements, double duration) {
-  const TendonDisplacements desired{displacements};
+  TendonDisplacements desired{displacements};
+  if (displacements.size() == drive_.axes.size() && all_finite(displacements) && drive_.loses_travel())
+    desired.wraps = tendon_wraps(arm_, drive_, fit_state(arm_, drive_, desired).state);
+  return send(desired, duration);
+}
+
+CommandOutcome DrivenArm::send(const TendonDisplacements& desired, double duration) {
   if (desired.pulled.size() != drive_.axes.size() || !all_finite(desired.pulled))
     return arm_refuses(fmt::format("expected {} finite displacements of tendons", drive_.axes.size()));
   if (!counts_motors()) return port_.command(desired.pulled, duration);
@@ -101,7 +108,7 @@ CommandOutcome DrivenArm::pull(const std::vector<double>& displacements, double 
   for (std::size_t i = 0; i < desired.pulled.size(); ++i)
     if (!(std::abs(desired.pulled[i]) * drive_.axes[i].microsteps_a_metre() < most_microsteps))
       return arm_refuses("a motor position is too large");
-  // If the controller refuses the command, the backlash remains on the same side.
+  // If the controller refuses the command, backlash and friction remain on the same side.
   MotorCommander next = commander_;
   next.follow(desired);
   const std::vector<double> targets(next.positions().begin(), next.positions().end());
@@ -146,7 +153,7 @@ Outcome<ArmReading> DrivenArm::read() {
     reading.state = fit_state(arm_, drive_, {reported.values}).state;
     return reading;
   }
-  reading.state = shape_carried(arm_, drive_, zero_, carried(reported));
+  reading.state = play_.follow(displacements_carried(drive_, zero_, carried(reported)).pulled);
   for (const double position : reported.values) reading.positions.push_back(std::llround(position));
   return reading;
 }

@@ -165,6 +165,69 @@ TEST(DrivenArm, TakesUpThePlayAndFollowsItInWhatIsRead) {
   });
 }
 
+Drive rubbing_tendons(double backlash, double travel) {
+  Drive drive = three_tendons(backlash);
+  for (Axis& axis : drive.axes) axis.spool.friction_travel = travel;
+  return drive;
+}
+
+// The motors also move through the travel that friction takes, and the readings give the shape.
+TEST(DrivenArm, TakesUpTheTravelThatFrictionTakesAndReadsTheShape) {
+  const Drive drive = rubbing_tendons(0.1, 0.002);
+  const double microsteps = drive.axes[0].microsteps_a_metre();
+  ASSERT_GT(0.002 * microsteps, 40);
+  for_random_cases(30, [&](TestRandom& random) {
+    SentDrive port;
+    const ArmState initial = bent(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
+    DrivenArm arm(port, one_section(), drive, initial);
+    const auto start = nominal_positions(one_section(), drive, initial);
+    port.at.assign(start.begin(), start.end());
+    EXPECT_LE(off(arm, initial), half_step(drive));
+    std::vector<double> tendons = tendon_displacements(one_section(), drive, initial).pulled, spools;
+    for (const double tendon : tendons)
+      spools.push_back(tendon * microsteps + 0.001 * initial.bends[0].norm() * microsteps);
+    for (int i = 0; i < 8; ++i) {
+      const ArmState desired = bent(random.uniform(-1, 1), random.uniform(-1, 1));
+      ASSERT_TRUE(arm.command(desired, 0));
+      EXPECT_LE(off(arm, desired), 1.2 * half_step(drive));
+      const std::vector<double> now = tendon_displacements(one_section(), drive, desired).pulled;
+      const double half = 0.001 * desired.bends[0].norm() * microsteps;
+      for (std::size_t k = 0; k < 3; ++k) {
+        // The spool may turn the other way than its tendon moves, because the tendon's wrap changes.
+        const double spool = now[k] * microsteps + (now[k] < tendons[k] ? -half : half),
+                     backlash = spool < spools[k] ? drive.axes[k].backlash_steps() : 0;
+        EXPECT_NEAR((k == 1 ? -1 : 1) * port.at[k], spool - backlash, 0.51) << i << ", tendon " << k;
+        spools[k] = spool;
+      }
+      tendons = now;
+    }
+  });
+}
+
+// A controller that reports load positions knows its backlash, but not the friction behind it.
+TEST(DrivenArm, ReadsTheShapeBehindFrictionFromLoadPositionsToo) {
+  const Drive drive = rubbing_tendons(0, 0.002);
+  SentDrive port;
+  DrivenArm arm(port, one_section(), drive, ArmState::straight(1));
+  for (const ArmState& desired : {bent(0.4, -0.3), bent(0.3, -0.2), bent(0.6, 0.1)}) {
+    ASSERT_TRUE(arm.command(desired, 0));
+    port.carried = port.at;
+    EXPECT_LE(off(arm, desired), 1.2 * half_step(drive));
+    // A read changes nothing.
+    EXPECT_LE(off(arm, desired), 1.2 * half_step(drive));
+  }
+}
+
+TEST(DrivenArm, PullsTendonsThroughTheFrictionOfTheNearestShape) {
+  const Drive drive = rubbing_tendons(0, 0.002);
+  SentDrive port, other;
+  DrivenArm arm(port, one_section(), drive, ArmState::straight(1)),
+      same(other, one_section(), drive, ArmState::straight(1));
+  ASSERT_TRUE(arm.command(bent(0.4, -0.3), 0));
+  ASSERT_TRUE(same.pull(tendon_displacements(one_section(), drive, bent(0.4, -0.3)).pulled, 0));
+  EXPECT_EQ(port.at, other.at);
+}
+
 TEST(DrivenArm, BelievesADriveThatFollowsItsPlay) {
   const Drive drive = three_tendons(0.1);
   SentDrive port;

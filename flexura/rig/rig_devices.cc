@@ -13,6 +13,7 @@
 
 #include "flexura/equipment/onvif_head.h"
 #include "flexura/equipment/visca_head.h"
+#include "flexura/kinematics/tendons.h"
 
 namespace flexura {
 namespace {
@@ -127,14 +128,16 @@ void ArmEquipment::beat() {
   if (guarded_) guarded_->beat();
 }
 
-// The backlash must be taken up for pulling in, so tendons that are tighter than at rest are let out first.
+// Backlash and friction must be taken up for pulling in, so tendons that are tighter than at rest are let out
+// first.
 void ArmEquipment::pull_in() {
   std::vector<double> slack = value_or_throw(drive_->read()).values;
   bool is_tight = false;
+  const std::vector<double> wraps = tendon_wraps(setup_.arm, *setup_.drive, setup_.initial);
   for (std::size_t i = 0; i < slack.size(); ++i) {
     const Axis& axis = setup_.drive->axes.at(i);
     const double sense = sense_of_axis(axis);
-    const double most = sense * rest_[i] - std::ceil(axis.backlash_steps());
+    const double most = sense * rest_[i] - std::ceil(axis.backlash_steps() + axis.friction_steps(wraps[i]));
     is_tight = is_tight || sense * slack[i] > most;
     slack[i] = sense * std::min(sense * slack[i], most);
   }

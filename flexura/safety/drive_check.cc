@@ -54,11 +54,13 @@ class AxisLimit {
   bool is_open_ = false;
 };
 
-// A motor's position in a row, microsteps: commanded, and before rounding with and without backlash.
+// A motor's position in a row, microsteps: commanded, and before rounding with and without backlash and
+// friction.
 struct MotorPlace {
   double position = 0;
   double target = 0;
   double without_backlash = 0;
+  double taken_up = 0;  // Part of the motion since the last row.
 };
 
 // Facts for the caveats of an axis, in addition to its violations.
@@ -76,7 +78,6 @@ class AxisCheck {
       : to_radians_(2 * std::numbers::pi / drive.axes[axis].motor.resolution()),
         most_(std::min(drive.axes[axis].motor.max_step_rate, drive.axes[axis].motor.max_speed / to_radians_) *
               (1 + limit_tolerance)),
-        backlash_(drive.axes[axis].backlash_steps()),
         speed_(Hazard::motor_speed, drive, axis, drive.axes[axis].motor.max_speed),
         step_rate_(Hazard::step_rate, drive, axis, drive.axes[axis].motor.max_step_rate),
         acceleration_(Hazard::motor_acceleration, drive, axis, drive.axes[axis].motor.max_acceleration),
@@ -96,8 +97,7 @@ class AxisCheck {
     }
     const double time = now.end - now.start;
     const double desired = (place.target - last_.target) / time;
-    const double taken_up = (place.target - place.without_backlash) - (last_.target - last_.without_backlash);
-    const bool took_up = std::abs(taken_up) > std::max(backlash_ / 2, 1e-3);  // Smaller changes are rounding.
+    const bool took_up = place.taken_up > 1e-3;  // Smaller changes are rounding.
     const double rate = judged_rate(place.position - last_.position, desired, time);
     const bool is_frequent = step_rate_.add(now, std::abs(rate), report);
     const bool is_fast = speed_.add(now, std::abs(rate) * to_radians_, report) || is_frequent;
@@ -155,7 +155,6 @@ class AxisCheck {
 
   double to_radians_;  // Radians per microstep of the motor.
   double most_;        // Lower of both limits, microsteps/s.
-  double backlash_;    // Backlash, microsteps.
   AxisLimit speed_, step_rate_, acceleration_, position_;
   MotorPlace last_;
   double last_rate_ = 0, last_desired_ = 0;  // microsteps/s, before rounding; `last_desired_` with backlash.
@@ -170,7 +169,8 @@ std::optional<TendonDisplacements> displacements_in(const Arm& arm, const Drive&
   TendonDisplacements desired = tendon_displacements(arm, drive, state);
   for (std::size_t i = 0; i < drive.axes.size(); ++i) {
     const double farthest = std::abs(desired.pulled[i]) * drive.axes[i].microsteps_a_metre();
-    if (!(farthest + drive.axes[i].backlash_steps() < max_countable)) return std::nullopt;
+    const double friction = desired.wraps.empty() ? 0 : drive.axes[i].friction_steps(desired.wraps[i]);
+    if (!(farthest + drive.axes[i].backlash_steps() + friction < max_countable)) return std::nullopt;
   }
   return desired;
 }
@@ -181,7 +181,8 @@ std::vector<MotorPlace> places_of(const MotorCommander& commander, const Drive& 
   std::vector<MotorPlace> places;
   places.reserve(exact.size());
   for (std::size_t i = 0; i < exact.size(); ++i)
-    places.push_back({static_cast<double>(commander.positions()[i]), commander.targets()[i], exact[i]});
+    places.push_back({static_cast<double>(commander.positions()[i]), commander.targets()[i], exact[i],
+                      commander.taken_up()[i]});
   return places;
 }
 

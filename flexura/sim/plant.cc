@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 
-#include "flexura/port/driven_arm.h"
 #include "flexura/sim/arm_setup.h"
 
 namespace flexura {
@@ -25,17 +24,18 @@ std::span<const double> span_of(const Eigen::VectorXd& u) {
 
 DrivenPlant::DrivenPlant(const PlantSetup& setup)
     : ArcPlant(setup.truth.arm),
-      arm_(setup.truth.arm),
-      drive_(setup.truth.drive.value()),
-      motors_(drive_, drive_, counted(setup.start), setup.horizon),
-      zero_(displacements_at_zero(arm_, drive_, setup.truth.initial, counted(setup.start))) {}
+      motors_(setup.truth.drive.value(), *setup.truth.drive, counted(setup.start), setup.horizon),
+      shapes_(setup.truth.arm, *setup.truth.drive, setup.truth.initial, counted(setup.start), setup.horizon) {
+}
 
 void DrivenPlant::command(double time, const Eigen::VectorXd& u, double duration) {
+  shapes_.advance(time, motors_);
   motors_.command(time, span_of(u), duration);
 }
 
-ArmState DrivenPlant::state(double time) const {
-  return shape_carried(arm_, drive_, zero_, motors_.carried(time));
+void DrivenPlant::halt(double time) {
+  shapes_.advance(time, motors_);
+  motors_.halt(time);
 }
 
 void BendPlant::command(double time, const Eigen::VectorXd& u, double duration) {

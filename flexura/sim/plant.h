@@ -13,6 +13,7 @@
 #include "flexura/sim/arm_setup.h"
 #include "flexura/sim/bend_motion.h"
 #include "flexura/sim/drive_motors.h"
+#include "flexura/sim/driven_shapes.h"
 #include "flexura/sim/plant_contact.h"
 
 namespace flexura {
@@ -131,21 +132,20 @@ class ArcPlant : public Plant {
   ArmModel arm_;
 };
 
-/// An arm that is a chain of arcs, moved by the true motors, spools with backlash, and tendons.
+/// An arm that is a chain of arcs, moved by the true motors, spools with backlash, and tendons with friction.
 class DrivenPlant : public ArcPlant {
  public:
   /// The setup's truth must have a drive.
   explicit DrivenPlant(const PlantSetup& setup);
 
   void command(double time, const Eigen::VectorXd& u, double duration) override;
-  void halt(double time) override { motors_.halt(time); }
-  [[nodiscard]] ArmState state(double time) const override;
+  void halt(double time) override;
+  void advance(double time) override { shapes_.advance(time, motors_); }
+  [[nodiscard]] ArmState state(double time) const override { return shapes_.at(time, motors_); }
 
  private:
-  Arm arm_;
-  Drive drive_;
   DriveMotors motors_;
-  std::vector<double> zero_;  // Tendon displacements at motor position 0, m.
+  DrivenShapes shapes_;
 };
 
 /// An arm that is a chain of arcs. The sections bend as commanded, within their own rates.

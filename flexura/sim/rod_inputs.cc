@@ -13,7 +13,6 @@
 
 #include "flexura/mechanics/arm_rod.h"
 #include "flexura/mechanics/rod_spring.h"
-#include "flexura/port/driven_arm.h"
 #include "flexura/sim/arm_setup.h"
 #include "flexura/sim/tendon_pull.h"
 
@@ -46,7 +45,7 @@ RodInputs::RodInputs(const PlantSetup& setup)
       breaks_(setup.truth.rod->breaks) {
   if (drive_) {
     motors_.emplace(*drive_, *drive_, microsteps(setup.start), setup.horizon);
-    zero_ = displacements_at_zero(arm_, *drive_, setup.truth.initial, microsteps(setup.start));
+    shapes_.emplace(arm_, *drive_, setup.truth.initial, microsteps(setup.start), setup.horizon);
   } else {
     bends_.emplace(arm_, setup.truth.initial, setup.horizon);
     beside_.emplace(rod_.tendons.size(), setup.horizon);
@@ -58,6 +57,7 @@ RodInputs::RodInputs(const PlantSetup& setup)
 
 void RodInputs::command(double time, const Eigen::VectorXd& u, double duration) {
   if (motors_) {
+    shapes_->advance(time, *motors_);
     motors_->command(time, {u.data(), static_cast<std::size_t>(u.size())}, duration);
   } else {
     bends_->command(time, commanded_state(u), duration);
@@ -67,6 +67,7 @@ void RodInputs::command(double time, const Eigen::VectorXd& u, double duration) 
 
 void RodInputs::halt(double time) {
   if (motors_) {
+    shapes_->advance(time, *motors_);
     motors_->halt(time);
   } else {
     bends_->halt(time);
@@ -154,18 +155,19 @@ bool RodInputs::is_pushed_anew(double start, double end) const {
 }
 
 void RodInputs::forget_before(double time) {
+  if (motors_) shapes_->forget_before(time, *motors_);
   // The last entry before `time` still applies.
   while (pushings_.size() > 1 && pushings_[1].time < time) pushings_.erase(pushings_.begin());
   while (weighings_.size() > 1 && weighings_[1].time < time) weighings_.erase(weighings_.begin());
 }
 
 std::optional<ArmState> RodInputs::commanded(double time) const {
-  if (motors_) return shape_carried(arm_, *drive_, zero_, motors_->carried(time));
+  if (motors_) return shapes_->at(time, *motors_);
   return bends_->at(time);
 }
 
 std::vector<double> RodInputs::pulled(double time) const {
-  if (motors_) return displacements_carried(*drive_, zero_, motors_->carried(time)).pulled;
+  if (motors_) return shapes_->spools(time, *motors_);
   std::vector<double> pulled = arc_displacements(rod_, bends_->at(time)).pulled;
   beside_->add_to(pulled, time);
   return pulled;

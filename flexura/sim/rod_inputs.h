@@ -10,6 +10,7 @@
 #include "flexura/model/drive.h"
 #include "flexura/sim/bend_motion.h"
 #include "flexura/sim/drive_motors.h"
+#include "flexura/sim/driven_shapes.h"
 #include "flexura/sim/plant.h"
 #include "flexura/sim/pull_motion.h"
 
@@ -90,8 +91,8 @@ class RodInputs {
   // One of these moves the rod: motors_ or bends_.
   std::optional<DriveMotors> motors_;
   std::optional<Drive> drive_;
-  std::vector<double> zero_;   // Tendon displacements of an arm of arcs at motor position 0, m.
-  std::vector<double> tight_;  // Displacements that the pretension adds, m.
+  std::optional<DrivenShapes> shapes_;  // Of an arm of arcs that the motors move.
+  std::vector<double> tight_;           // Displacements that the pretension adds, m.
   std::optional<BendMotion> bends_;
   std::optional<PullMotion> beside_;  // Displacements in addition to those of the bends.
   std::vector<TendonBreak> breaks_;

@@ -127,6 +127,61 @@ TEST(SimulatedArm, TruePlayThatTheModelDoesNotKnowKeepsItAway) {
   EXPECT_LE(difference(arm.read().value().state, ArmState::straight(2)), rounding(model));
 }
 
+// Random shapes one after the other. The true tendons lose travel by friction, as the model knows.
+TEST(SimulatedArm, FrictionThatTheModelKnowsIsCompensated) {
+  RigConfig rig = two_section_rig();
+  rig.drive->spool.friction_travel = 0.001;
+  RigConfig unknowing = rig;
+  unknowing.drive->spool.friction_travel.reset();
+  for_random_cases(5, [&](TestRandom& random) {
+    SimulatedClock clock;
+    SimulatedArm arm(ArmSetup{rig}, ArmSetup{rig}, clock, 0.5),
+        without(ArmSetup{unknowing}, ArmSetup{rig}, clock, 0.5);
+    ArmState target = ArmState::straight(2);
+    double worst = 0, worst_without = 0;
+    for (int motion = 0; motion < 6; ++motion) {
+      const ArmState from = target;
+      for (Eigen::Vector2d& bend : target.bends) bend = random.vector<2>(-1, 1);
+      const double start = clock.now();
+      for (int step = 1; step <= 100; ++step) {
+        ArmState now = from;
+        for (std::size_t k = 0; k < 2; ++k) now.bends[k] += 0.01 * step * (target.bends[k] - from.bends[k]);
+        for (SimulatedArm* each : {&arm, &without}) ASSERT_TRUE(each->command(now, 0.1));
+        clock.wait_until(start + 0.1 * step);
+        for (SimulatedArm* each : {&arm, &without}) each->plant().advance(clock.now());
+      }
+      clock.wait_until(clock.now() + 5);
+      for (SimulatedArm* each : {&arm, &without}) each->plant().advance(clock.now());
+      worst = std::max(worst, difference(arm.truth(clock.now()), target));
+      worst_without = std::max(worst_without, difference(without.truth(clock.now()), target));
+      EXPECT_LE(difference(arm.read().value().state, target), 3 * rounding(rig));
+      EXPECT_LE(difference(arm.truth(clock.now() + 100), target), 3 * rounding(rig)) << "at rest";
+    }
+    EXPECT_LE(worst, 3 * rounding(rig));
+    EXPECT_GT(worst_without, 0.02) << "half a millimetre per radian, at 15 mm from the backbone";
+  });
+}
+
+// Answers about tendons with friction do not depend on earlier queries.
+TEST(SimulatedArm, WithFrictionAnswersTheSameHoweverItIsAsked) {
+  RigConfig rig = two_section_rig();
+  rig.drive->spool.friction_travel = 0.002;
+  SimulatedClock clock;
+  SimulatedArm asked(ArmSetup{rig}, ArmSetup{rig}, clock, 1), silent(ArmSetup{rig}, ArmSetup{rig}, clock, 1);
+  for (int i = 0; i < 60; ++i) {
+    ArmState target = ArmState::straight(2);
+    target.bends[1] = {0.3 * std::sin(0.7 * i), 0.2 * i / 60};
+    for (SimulatedArm* each : {&asked, &silent}) ASSERT_TRUE(each->command(target, 0.1));
+    clock.wait_until(clock.now() + 0.093);
+    for (int k = 0; k < 3; ++k) (void)asked.truth(clock.now() - 0.013 * k);
+    asked.plant().advance(clock.now());
+  }
+  const double now = clock.now();
+  silent.plant().advance(now);
+  for (const double time : {now - 0.9, now - 0.333, now, now + 1})
+    EXPECT_EQ(difference(asked.truth(time), silent.truth(time)), 0) << now - time;
+}
+
 TEST(SimulatedArm, TrueTendonsBendItOtherwise) {
   RigConfig model = two_section_rig(), truth = model;
   truth.drive->radius = 0.0165;  // A tenth wider: a tenth less bend.

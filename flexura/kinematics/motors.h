@@ -24,8 +24,7 @@ namespace flexura {
 /// Computes the motor positions to command so that tendons follow target displacements. The positions are
 /// rounded to the nearest microstep, and compensate the whole backlash as soon as a tendon reverses. If the
 /// displacements include wraps, the positions also compensate the travel that friction takes: half of the
-/// travel in either direction. Thus
-/// each tendon remains within half a microstep of its target.
+/// travel in either direction. Thus each tendon remains within half a microstep of its target.
 class MotorCommander {
  public:
   /// Starts at the displacements `start`, with backlash and friction compensated for pulling in. Throws

@@ -81,12 +81,6 @@ Node cameras_answer(const IntrinsicsArguments& arguments, const BoardTarget& boa
   const bool is_pair = arguments.images.empty();
   const auto names = names_of_cameras(
       arguments, is_pair ? std::vector<std::string>{"left", "right"} : std::vector<std::string>{"camera"});
-  if (is_pair && board.is_ambiguous())
-    throw input_error("--board",
-                      fmt::format("{}x{}: looks the same upside down, so two cameras may count the corners "
-                                  "from different ends: expected a chessboard with one even and one odd "
-                                  "number, or asymmetric circles with an odd number of rows",
-                                  board.columns, board.rows));
   const std::vector<std::string>& first = is_pair ? arguments.left : arguments.images;
   // The fit takes about as long as the search in half of the pictures.
   WorkProgress work(progress, {static_cast<double>(first.size()), static_cast<double>(arguments.right.size()),

@@ -208,7 +208,8 @@ IntrinsicsFit fit_pictures(const IntrinsicsArguments& arguments, const BoardTarg
   const std::vector<BoardView> views = views_of(pictures);
   return fit_intrinsics(board.points(), views, sizes,
                         {.distortion = static_cast<int>(arguments.distortion),
-                         .hold_out = static_cast<int>(arguments.hold_out.value_or(0))});
+                         .hold_out = static_cast<int>(arguments.hold_out.value_or(0)),
+                         .orders = board.equal_orders()});
 }
 
 }  // namespace flexura

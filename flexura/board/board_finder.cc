@@ -103,7 +103,7 @@ double brightness(const Image<std::uint8_t>& gray, const std::vector<Vector2d>& 
 }
 
 // Brings the points into the same order for all cameras, as far as the board determines the order.
-void put_in_order(const Image<std::uint8_t>& gray, const BoardTarget& board, std::vector<Vector2d>& pixels) {
+void order_as_seen(const Image<std::uint8_t>& gray, const BoardTarget& board, std::vector<Vector2d>& pixels) {
   const auto columns = static_cast<std::size_t>(board.columns), rows = pixels.size() / columns;
   // The order is mirrored, as if the board were seen from behind.
   if (board.pattern != BoardPattern::asymmetric_circles &&
@@ -149,7 +149,7 @@ BoardObservation find_board(const Image<std::uint8_t>& gray, const BoardTarget& 
     return {.pixels = {},
             .reason = "a part of a larger board: the pattern continues beyond the found points",
             .is_larger = true};
-  put_in_order(gray, board, observation.pixels);
+  order_as_seen(gray, board, observation.pixels);
   return observation;
 }
 

@@ -20,6 +20,10 @@ struct IntrinsicsConfig {
   int distortion = 5;
   /// N = hold_out: every Nth view is excluded from the fit and only predicted; 0: all views are fitted.
   int hold_out = 0;
+  /// Orders of the board's points in which the board looks the same (BoardTarget::equal_orders()); empty: one
+  /// order. If there are several, cameras may count the points differently. The order that all common views
+  /// agree on is used. The fit fails if a second order fits, too.
+  std::vector<std::vector<std::size_t>> orders = {};
 };
 
 /// Lens of one camera, estimated from views of a board.

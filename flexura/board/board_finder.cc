@@ -1,5 +1,7 @@
 #include "flexura/board/board_finder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -53,7 +55,8 @@ bool refine_up(const std::vector<cv::Mat>& pictures, std::size_t level, const Bo
 }
 
 // Searches reduced pictures first: there, noise is smaller and the work is bounded.
-bool search_levels(const cv::Mat& picture, const BoardTarget& board, Corners& corners, double& work) {
+bool search_levels(const cv::Mat& picture, const BoardTarget& board, Corners& corners,
+                   BoardObservation& observation) {
   const std::vector<cv::Mat> pictures = reduced_pictures(picture);
   std::size_t first = 0;
   while (first + 1 < pictures.size() && static_cast<double>(pictures[first].total()) > first_search_pixels)
@@ -67,7 +70,16 @@ bool search_levels(const cv::Mat& picture, const BoardTarget& board, Corners& co
   for (std::size_t i = 0; i < levels.size() && !is_found; ++i)
     is_found =
         search.find(pictures[levels[i]], corners) && refine_up(pictures, levels[i], search, board, corners);
-  work = search.work();
+  observation.work = search.work();
+  if (is_found) return true;
+  observation.reason = "the picture does not contain a complete board of this size";
+  // Of the reduced picture searched first.
+  Corners unused;
+  if (board.pattern == BoardPattern::chessboard || search.find(pictures[first], unused)) return false;
+  const cv::Size other = search.other_grid();
+  if (other.width > 0)
+    observation.reason = fmt::format("the picture shows a grid of {}x{} circles, not of {}x{}", other.width,
+                                     other.height, board.columns, board.rows);
   return is_found;
 }
 
@@ -116,7 +128,7 @@ BoardObservation find_board(const Image<std::uint8_t>& gray, const BoardTarget& 
   BoardObservation observation;
   bool is_found = false;
   try {
-    is_found = search_levels(picture, board, corners, observation.work);
+    is_found = search_levels(picture, board, corners, observation);
   } catch (const cv::Exception&) {
     is_found = false;  // For example a picture too small for the search.
   }
@@ -127,7 +139,8 @@ BoardObservation find_board(const Image<std::uint8_t>& gray, const BoardTarget& 
   if (!is_found ||
       corners.size() != static_cast<std::size_t>(board.columns) * static_cast<std::size_t>(board.rows) ||
       !std::ranges::all_of(corners, is_inside)) {
-    observation.reason = "the picture does not contain a complete board of this size";
+    if (observation.reason.empty())
+      observation.reason = "the picture does not contain a complete board of this size";
     return observation;
   }
   for (const cv::Point2f& corner : corners) observation.pixels.emplace_back(corner.x, corner.y);

@@ -162,17 +162,42 @@ bool BoardSearch::find_corners(const cv::Mat& picture, Points& points) {
 bool BoardSearch::find_circles(const cv::Mat& picture, Points& points) {
   std::vector<cv::KeyPoint> blobs;
   circle_detector(picture, board_)->detect(picture, blobs);
+  middles_.clear();
   if (blobs.size() > std::max(most_spots, 4 * static_cast<std::size_t>(board_.columns * board_.rows)))
     return false;
   work_ += work_per_pair * static_cast<double>(blobs.size() * blobs.size());
-  Points middles;
-  for (const cv::KeyPoint& blob : blobs) middles.push_back(blob.pt);
+  for (const cv::KeyPoint& blob : blobs) middles_.push_back(blob.pt);
+  if (find_grid({board_.columns, board_.rows}, points)) return true;
+  if (board_.pattern != BoardPattern::circles || !find_grid({board_.rows, board_.columns}, points))
+    return false;
+  // The grid is turned: its rows are the board's columns.
+  Points turned;
+  for (int row = 0; row < board_.rows; ++row)
+    for (int column = 0; column < board_.columns; ++column)
+      turned.push_back(points[static_cast<std::size_t>(column * board_.rows + row)]);
+  points = turned;
+  return true;
+}
+
+bool BoardSearch::find_grid(cv::Size size, Points& points) const {
   // The search for the grid uses random numbers: equal ones for every picture.
   cv::setRNGSeed(1);
   const int kind =
       board_.pattern == BoardPattern::circles ? cv::CALIB_CB_SYMMETRIC_GRID : cv::CALIB_CB_ASYMMETRIC_GRID;
-  return cv::findCirclesGrid(middles, {board_.columns, board_.rows}, points, kind,
-                             cv::Ptr<cv::FeatureDetector>());
+  return cv::findCirclesGrid(middles_, size, points, kind, cv::Ptr<cv::FeatureDetector>());
+}
+
+cv::Size BoardSearch::other_grid() const {
+  constexpr int least = 3, most = 50;
+  constexpr std::size_t most_middles = 200;  // For more, each grid takes a second.
+  if (middles_.size() > most_middles) return {0, 0};
+  const int count = static_cast<int>(middles_.size());
+  Points points;
+  for (int rows = least; rows <= most && rows * least <= count; ++rows) {
+    if (count % rows != 0 || count / rows > most) continue;
+    if (find_grid({count / rows, rows}, points)) return {count / rows, rows};
+  }
+  return {0, 0};
 }
 
 bool BoardSearch::refine(const cv::Mat& picture, Points& points) const {

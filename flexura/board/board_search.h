@@ -24,14 +24,20 @@ class BoardSearch {
   /// false if a point is lost.
   bool refine(const cv::Mat& picture, std::vector<cv::Point2f>& points) const;
 
+  /// Returns the numbers of columns and rows of a grid of circles in the last picture that find() searched;
+  /// (0, 0) if there is none, and for chessboards.
+  [[nodiscard]] cv::Size other_grid() const;
+
   /// Returns the work done by find() so far: pixels, plus 40 for each pair of dark or bright spots.
   [[nodiscard]] double work() const { return work_; }
 
  private:
   bool find_corners(const cv::Mat& picture, std::vector<cv::Point2f>& points);
+  bool find_grid(cv::Size size, std::vector<cv::Point2f>& points) const;
   bool find_circles(const cv::Mat& picture, std::vector<cv::Point2f>& points);
 
   BoardTarget board_;
+  std::vector<cv::Point2f> middles_;  // Of the dark spots in the last picture.
   double work_ = 0;
 };
 

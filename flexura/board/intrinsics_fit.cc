@@ -40,10 +40,11 @@ constexpr const char* untilted =
 constexpr double best_noise = 0.05;  // px, of the best pictures.
 
 // Undetermined unknowns diverge although the fit explains the views.
-const char* why_not_converged(const BundleFit& fit) {
+std::string why_not_converged(const BundleFit& fit, const LensMisfit& misfit, int distortion) {
   constexpr double good = 2;  // px
   const bool is_explained = fit.points > 0 && rms_of(fit.square_sum, fit.points) < good;
-  return is_explained ? untilted : "no lens explains the views";
+  if (is_explained) return untilted;
+  return misfit.is_systematic() ? misfit.reason(distortion) : "no lens explains the views";
 }
 
 bool is_seen_only_by(std::size_t camera, const BoardView& view) {
@@ -80,7 +81,8 @@ class Calibration {
     if (!find_start(start)) return std::move(result_);
     const BundleFit fit = fit_bundle(points_, fitted_, start, bundle_config(1e-12));
     if (std::string reason = why_apart(fit); !reason.empty()) return fail(std::move(reason));
-    if (!fit.is_converged) return fail(why_not_converged(fit));
+    if (!fit.is_converged)
+      return fail(why_not_converged(fit, worst_misfit(points_, fitted_, fit.bundle), config_.distortion));
     if (std::string reason = why_ambiguous(fit); !reason.empty()) return fail(std::move(reason));
     take(fit);
     report_views();
@@ -127,7 +129,8 @@ class Calibration {
                          fmt::format("{} to fit: expected at least two views, from different directions",
                                      own.views.empty() ? "no view of the board" : "one view of the board");
       } else if (!own.fit.is_converged) {
-        result_.reason = camera_text(camera) + why_not_converged(own.fit);
+        result_.reason = camera_text(camera) +
+                         why_not_converged(own.fit, misfit_of_alone(own, camera), config_.distortion);
       }
       if (!result_.reason.empty()) return false;
       start.lenses.push_back(own.fit.bundle.lenses.front());
@@ -158,6 +161,13 @@ class Calibration {
       }
     }
     return true;
+  }
+
+  [[nodiscard]] LensMisfit misfit_of_alone(const CameraAlone& own, std::size_t camera) const {
+    if (own.fit.bundle.lenses.empty()) return {};
+    std::vector<BoardView> views;
+    for (const std::size_t view : own.views) views.push_back({{fitted_[view].pixels[camera]}});
+    return lens_misfit(points_, views, own.fit.bundle, 0);
   }
 
   // Brings a camera's points into the first camera's order, as the common views agree.
@@ -286,6 +296,7 @@ class Calibration {
         sum += part, count += points_.size();
       }
       own.rms = rms_of(sum, count);
+      own.misfit = lens_misfit(points_, fitted_, bundle_, camera);
     }
   }
 
@@ -328,8 +339,13 @@ class Calibration {
   void judge() {
     for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
       judge(camera);
+      constexpr double useless = 2;  // px
+      const LensMisfit& misfit = result_.cameras[camera].misfit;
+      if (misfit.is_systematic() && misfit.rms > useless)
+        result_.reason = camera_text(camera) + misfit.reason(config_.distortion);
       const auto& undetermined = result_.cameras[camera].undetermined;
-      if (!undetermined.empty() && undetermined.front() < 4) result_.reason = camera_text(camera) + untilted;
+      if (result_.reason.empty() && !undetermined.empty() && undetermined.front() < 4)
+        result_.reason = camera_text(camera) + untilted;
     }
     result_.is_found = result_.reason.empty();
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "flexura/board/board_bundle.h"
+#include "flexura/board/lens_misfit.h"
 #include "flexura/camera/intrinsics.h"
 #include "flexura/math/pose.h"
 
@@ -48,6 +49,8 @@ struct CameraFit {
   /// distance, a parameter that moves the image's corners that far is undetermined too. The error of observed
   /// pixels is assumed to be at least 0.05 px.
   std::vector<int> undetermined;
+
+  LensMisfit misfit;  ///< Structure of the residuals in the fitted views.
 
   /// Returns the standard deviation of an intrinsic parameter, in its unit. `parameter` is the index in the
   /// order of `intrinsics_count`.

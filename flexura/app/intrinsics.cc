@@ -16,6 +16,7 @@
 #include "flexura/app/intrinsics_files.h"
 #include "flexura/app/intrinsics_pictures.h"
 #include "flexura/app/intrinsics_table.h"
+#include "flexura/app/intrinsics_units.h"
 #include "flexura/app/intrinsics_zoom.h"
 #include "flexura/app/terminal_progress.h"
 #include "flexura/base/source.h"
@@ -93,8 +94,9 @@ Node cameras_answer(const IntrinsicsArguments& arguments, const BoardTarget& boa
   Node::Table answer{{"found", {}, {fit.is_found, {}}}};
   if (!fit.is_found) answer.push_back({"reason", {}, text_node(fit.reason)});
   answer.push_back({"board", {}, board_node(board)});
-  if (const auto notes = notes_of(pictures, fit); !notes.empty())
-    answer.push_back({"notes", {}, texts_node(notes)});
+  auto notes = notes_of(pictures, fit);
+  for (std::string& note : unit_notes(arguments, board, fit)) notes.push_back(std::move(note));
+  if (!notes.empty()) answer.push_back({"notes", {}, texts_node(notes)});
   if (fit.points > 0) answer.push_back({"rms_px", {}, number_node(fit.rms)});
   add_held_out(fit, answer);
   Node::Array entries;

@@ -65,8 +65,8 @@ std::size_t spots_of(const cv::Mat& picture) {
 double even_contrast(const cv::Mat& contrast) {
   constexpr double least = 4;
   std::array<std::size_t, 256> counts{};
-  for (auto value = contrast.begin<std::uint8_t>(); value != contrast.end<std::uint8_t>(); ++value)
-    ++counts[*value];
+  const cv::Mat_<std::uint8_t> values(contrast);
+  for (const std::uint8_t value : values) ++counts[value];
   std::size_t middle = 0, largest = 255, sum = counts[0];
   while (2 * sum < contrast.total()) sum += counts[++middle];
   while (largest > 0 && counts[largest] == 0) --largest;
@@ -163,8 +163,7 @@ bool BoardSearch::find_circles(const cv::Mat& picture, Points& points) {
   std::vector<cv::KeyPoint> blobs;
   circle_detector(picture, board_)->detect(picture, blobs);
   middles_.clear();
-  if (blobs.size() > std::max(most_spots, 4 * static_cast<std::size_t>(board_.columns * board_.rows)))
-    return false;
+  if (blobs.size() > std::max(most_spots, 4 * board_.points().size())) return false;
   work_ += work_per_pair * static_cast<double>(blobs.size() * blobs.size());
   for (const cv::KeyPoint& blob : blobs) middles_.push_back(blob.pt);
   if (find_grid({board_.columns, board_.rows}, points)) return true;

@@ -166,6 +166,7 @@ class Calibration {
   [[nodiscard]] LensMisfit misfit_of_alone(const CameraAlone& own, std::size_t camera) const {
     if (own.fit.bundle.lenses.empty()) return {};
     std::vector<BoardView> views;
+    views.reserve(own.views.size());
     for (const std::size_t view : own.views) views.push_back({{fitted_[view].pixels[camera]}});
     return lens_misfit(points_, views, own.fit.bundle, 0);
   }

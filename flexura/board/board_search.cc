@@ -170,10 +170,10 @@ bool BoardSearch::find_circles(const cv::Mat& picture, Points& points) {
   if (board_.pattern != BoardPattern::circles || !find_grid({board_.rows, board_.columns}, points))
     return false;
   // The grid is turned: its rows are the board's columns.
+  const auto columns = static_cast<std::size_t>(board_.columns), rows = static_cast<std::size_t>(board_.rows);
   Points turned;
-  for (int row = 0; row < board_.rows; ++row)
-    for (int column = 0; column < board_.columns; ++column)
-      turned.push_back(points[static_cast<std::size_t>(column * board_.rows + row)]);
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t column = 0; column < columns; ++column) turned.push_back(points[column * rows + row]);
   points = turned;
   return true;
 }

@@ -16,6 +16,7 @@
 #include "flexura/app/intrinsics_files.h"
 #include "flexura/app/intrinsics_pictures.h"
 #include "flexura/app/intrinsics_table.h"
+#include "flexura/app/intrinsics_units.h"
 #include "flexura/app/intrinsics_zoom.h"
 #include "flexura/app/terminal_progress.h"
 #include "flexura/base/source.h"
@@ -81,12 +82,6 @@ Node cameras_answer(const IntrinsicsArguments& arguments, const BoardTarget& boa
   const bool is_pair = arguments.images.empty();
   const auto names = names_of_cameras(
       arguments, is_pair ? std::vector<std::string>{"left", "right"} : std::vector<std::string>{"camera"});
-  if (is_pair && board.is_ambiguous())
-    throw input_error("--board",
-                      fmt::format("{}x{}: looks the same upside down, so two cameras may count the corners "
-                                  "from different ends: expected a chessboard with one even and one odd "
-                                  "number, or asymmetric circles with an odd number of rows",
-                                  board.columns, board.rows));
   const std::vector<std::string>& first = is_pair ? arguments.left : arguments.images;
   // The fit takes about as long as the search in half of the pictures.
   WorkProgress work(progress, {static_cast<double>(first.size()), static_cast<double>(arguments.right.size()),
@@ -99,8 +94,9 @@ Node cameras_answer(const IntrinsicsArguments& arguments, const BoardTarget& boa
   Node::Table answer{{"found", {}, {fit.is_found, {}}}};
   if (!fit.is_found) answer.push_back({"reason", {}, text_node(fit.reason)});
   answer.push_back({"board", {}, board_node(board)});
-  if (const auto notes = notes_of(pictures, fit); !notes.empty())
-    answer.push_back({"notes", {}, texts_node(notes)});
+  auto notes = notes_of(pictures, fit);
+  for (std::string& note : unit_notes(arguments, board, fit)) notes.push_back(std::move(note));
+  if (!notes.empty()) answer.push_back({"notes", {}, texts_node(notes)});
   if (fit.points > 0) answer.push_back({"rms_px", {}, number_node(fit.rms)});
   add_held_out(fit, answer);
   Node::Array entries;

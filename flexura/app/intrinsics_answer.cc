@@ -133,8 +133,25 @@ Node pair_node(const IntrinsicsFit& fit) {
           {}};
 }
 
+namespace {
+
+// Adds a note on pictures whose file states another orientation than the first.
+void add_turned(const BoardPictures& pictures, std::vector<std::string>& notes) {
+  for (std::size_t i = 0; i < pictures.orientations.size(); ++i) {
+    if (pictures.orientations[i] == pictures.orientations.front()) continue;
+    notes.push_back(fmt::format(
+        "{} was turned as its orientation tag says, but {} was not turned in this way: if the camera "
+        "was turned between them, the principal point is wrong; then remove the tags",
+        pictures.names[i], pictures.names.front()));
+    return;
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras, const IntrinsicsFit& fit) {
   std::vector<std::string> notes;
+  for (const BoardPictures& pictures : cameras) add_turned(pictures, notes);
   for (std::size_t i = 0; i < fit.cameras.size() && i < cameras.size(); ++i) {
     add_warnings(cameras[i], fit.cameras[i], notes);
     // Fits with a larger misfit are rejected as a pair (IntrinsicsFit::reason).
@@ -145,6 +162,11 @@ std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras, con
           fmt::format("the residual of camera {} is {:.2g} px alone and {:.2g} px together with the other "
                       "camera: pictures were not taken at the same time, or a camera moved",
                       i + 1, alone, together));
+    if (const LensMisfit& misfit = fit.cameras[i].misfit; fit.is_found && misfit.is_systematic())
+      notes.push_back(fmt::format(
+          "the residuals of camera {} are alike in neighbouring points: the lens model does not fit "
+          "the lens, or the board is not flat",
+          i + 1));
     const auto& undetermined = fit.cameras[i].undetermined;
     if (!undetermined.empty() && undetermined.front() >= 4)
       notes.push_back(

@@ -17,6 +17,7 @@
 #include "flexura/base/node.h"
 #include "flexura/base/source.h"
 #include "flexura/board/board_bundle.h"
+#include "flexura/picture/orientation.h"
 #include "flexura/store/text_file.h"
 #include "flexura/vision/picture_file.h"
 
@@ -154,11 +155,15 @@ BoardPictures look_for_board(const std::vector<std::string>& files, const BoardT
   for (const std::string& name : files) {
     progress.update(static_cast<double>(done++) / static_cast<double>(files.size()), name);
     const std::string file = read_text_file(name, most_picture_bytes);
+    pictures.orientations.push_back(orientation_in(bytes_of(file)));
     const Photograph photograph = decode_picture(bytes_of(file), name);
     const std::array<int, 2> size = {photograph.bytes.width(), photograph.bytes.height()};
     if (pictures.observations.empty()) pictures.size = size;
     if (size != pictures.size)
-      throw input_error(name, fmt::format("{} x {} px: expected {} x {} px, as {}", size[0], size[1],
+      throw input_error(name, fmt::format("{} x {} px{}: expected {} x {} px, as {}", size[0], size[1],
+                                          pictures.orientations.back() == pictures.orientations.front()
+                                              ? ""
+                                              : " when turned as its orientation tag says",
                                           pictures.size[0], pictures.size[1], files.front()));
     pictures.observations.push_back(find_board(gray_picture(photograph.bytes), board));
   }
@@ -208,7 +213,8 @@ IntrinsicsFit fit_pictures(const IntrinsicsArguments& arguments, const BoardTarg
   const std::vector<BoardView> views = views_of(pictures);
   return fit_intrinsics(board.points(), views, sizes,
                         {.distortion = static_cast<int>(arguments.distortion),
-                         .hold_out = static_cast<int>(arguments.hold_out.value_or(0))});
+                         .hold_out = static_cast<int>(arguments.hold_out.value_or(0)),
+                         .orders = board.equal_orders()});
 }
 
 }  // namespace flexura

@@ -18,6 +18,7 @@ struct BoardPictures {
   std::vector<std::string> names;
   std::vector<BoardObservation> observations;
   std::array<int, 2> size = {0, 0};  ///< Width and height, px.
+  std::vector<int> orientations;     ///< Orientation stated in each file, from 1 to 8 (EXIF); 1: not turned.
 };
 
 /// Pictures at one position of a zoom.

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "flexura/app/commands.h"
+#include "flexura/base/bytes.h"
 #include "flexura/base/image.h"
 #include "flexura/base/node.h"
 #include "flexura/base/source.h"
@@ -28,10 +29,12 @@
 #include "flexura/experiment/experiment.h"
 #include "flexura/math/so3.h"
 #include "flexura/picture/image_file.h"
+#include "flexura/picture/orientation.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "flexura/store/toml.h"
 #include "tests/support/boards.h"
+#include "tests/support/oriented_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -161,6 +164,85 @@ TEST_F(IntrinsicsCommand, MeasuresWhereTheSecondCameraOfAPairStands) {
   const Pose X_WC = cameras[1].mount.pose();
   EXPECT_NEAR(X_WC.position.y(), -X_12.position.y(), 1.5e-3);
   EXPECT_LT((X_WC.rotation - so3_exp({std::numbers::pi, 0, 0}) * X_12.rotation).norm(), 5e-3);
+}
+
+TEST_F(IntrinsicsCommand, MeasuresAPairBeforeABoardThatLooksTheSameUpsideDown) {
+  const BoardTarget small{.columns = 6, .rows = 4, .square = 0.03};
+  const Lens lens(lens_of(260));
+  const Pose X_12{so3_exp({0.02, -0.14, 0.3}), {0.05, 0.01, -0.02}};
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    TestRandom random(i + 7);
+    Pose X_1B = random_board(random, small, 0.34, 0.6, 0.02);
+    const Eigen::Vector3d middle(2.5 * small.square, 1.5 * small.square, 0);
+    const Eigen::Matrix3d turned = so3_exp({0, 0, 1.3});
+    X_1B = X_1B * Pose{turned, middle - turned * middle};
+    const auto name = [&](const char* side) { return fmt::format("{}{}.png", side, i); };
+    arguments_.left.push_back(write(name("left"), board_picture(small, lens, X_1B, width, height)));
+    arguments_.right.push_back(
+        write(name("right"), board_picture(small, lens, X_12.inverse() * X_1B, width, height)));
+  }
+  arguments_.board = "6x4";
+  const Node found = answer(exit_done);
+  EXPECT_NEAR(number(*found.find("pair"), "distance"), X_12.position.norm(), 1e-3);
+  // With one common view, both orders fit.
+  for (std::size_t i = 1; i < 5; ++i)
+    (i % 2 == 0 ? arguments_.left : arguments_.right)[i] =
+        write(fmt::format("blank{}.png", i), Image<std::uint8_t>(width, height, 1, 200));
+  EXPECT_THAT(*answer(exit_missed).find("reason")->as<std::string>(), HasSubstr("fit in two orders"));
+}
+
+// A picture stored upside down, with the tag that says so, is like the upright one.
+TEST_F(IntrinsicsCommand, HeedsTheOrientationOfPictures) {
+  arguments_.images = photograph("a", 260);
+  const Node expected = answer(exit_done);
+  for (const int orientation : {3, 6}) {
+    Image<std::uint8_t> picture = std::get<Image<std::uint8_t>>(
+        read_picture(bytes_of(read_text_file(arguments_.images[1], 1 << 20)), "a1.png", 1 << 20));
+    // Half a turn, or a quarter turn; orientation 8 stores the inverse of 6.
+    picture = std::get<Image<std::uint8_t>>(upright(picture, orientation == 3 ? 3 : 8));
+    IntrinsicsArguments kept = arguments_;
+    arguments_.images[1] = path(fmt::format("turned{}.png", orientation));
+    write_new_file(arguments_.images[1], oriented_png(picture, orientation));
+    const Node found = answer(exit_done);
+    EXPECT_EQ(number(entry(found, "cameras", 0), "cx"), number(entry(expected, "cameras", 0), "cx"));
+    EXPECT_EQ(number(found, "rms_px"), number(expected, "rms_px"));
+    ASSERT_NE(found.find("notes"), nullptr);
+    EXPECT_THAT(write_json(*found.find("notes")), HasSubstr("was turned as its orientation tag says"));
+    arguments_ = kept;
+  }
+}
+
+TEST_F(IntrinsicsCommand, NamesTheFactorOfLengthsThatAreNotInMetres) {
+  arguments_.images = photograph("a", 260);
+  EXPECT_EQ(answer(exit_done).find("notes"), nullptr);
+  for (const auto& [factor, text] : {std::pair{1000.0, "in mm, divide it by 1000: --square 0.03"},
+                                     {100.0, "in cm, divide it by 100: --square 0.03"}}) {
+    arguments_.square = factor * board.square;
+    EXPECT_THAT(write_json(*answer(exit_done).find("notes")), HasSubstr(text));
+  }
+  arguments_.square = board.square;
+  arguments_.position = {900, 0, -1200};
+  EXPECT_THAT(write_json(*answer(exit_done).find("notes")),
+              HasSubstr("--position is 1500 m from the origin, but the boards are 0."));
+  arguments_.position = {0.9, 0, -1.2};
+  EXPECT_EQ(answer(exit_done).find("notes"), nullptr);
+}
+
+TEST_F(IntrinsicsCommand, NamesTheGridThatThePicturesShow) {
+  const BoardTarget circles{.pattern = BoardPattern::circles, .columns = 6, .rows = 4};
+  const Lens lens({.fx = 330, .fy = 330, .cx = 159.5, .cy = 119.5});
+  for (std::uint64_t i = 1; i < 4; ++i) {
+    TestRandom random(i);
+    arguments_.images.push_back(
+        write(fmt::format("{}.png", i),
+              board_picture(circles, lens, random_board(random, circles, 0.3, 0.4, 0.02), 320, 240)));
+  }
+  arguments_.pattern = "circles", arguments_.board = "7x5";
+  EXPECT_THAT(*entry(entry(answer(exit_missed), "cameras", 0), "views", 0).find("reason")->as<std::string>(),
+              HasSubstr("the picture shows a grid of 6x4 circles, not of 7x5"));
+  // The same grid, counted along the other side.
+  arguments_.board = "4x6";
+  EXPECT_EQ(*entry(answer(exit_done), "cameras", 0).find("views_used")->as<std::int64_t>(), 3);
 }
 
 TEST_F(IntrinsicsCommand, MeasuresAZoom) {
@@ -309,8 +391,6 @@ TEST_F(IntrinsicsCommand, RefusesPicturesThatItCannotUse) {
   EXPECT_THAT(refusal(), HasSubstr("--left"));
   arguments_.left = {good, good}, arguments_.right = {good};
   EXPECT_THAT(refusal(), HasSubstr("--right: 1 picture for 2 of --left: expected one per picture of --left"));
-  arguments_.right = {good, good}, arguments_.board = "6x4";
-  EXPECT_THAT(refusal(), HasSubstr("upside down"));
 }
 
 TEST_F(IntrinsicsCommand, RefusesNumbersThatItCannotUse) {

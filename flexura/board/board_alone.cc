@@ -65,17 +65,6 @@ CameraAlone fit_alone(std::span<const Vector2d> points, std::span<const BoardVie
   return alone;
 }
 
-std::vector<CameraStep> camera_steps(const CameraAlone& first, const CameraAlone& other) {
-  std::vector<CameraStep> steps;
-  for (std::size_t i = 0; i < first.views.size(); ++i) {
-    const auto same = std::ranges::find(other.views, first.views[i]);
-    if (same == other.views.end()) continue;
-    const auto j = static_cast<std::size_t>(same - other.views.begin());
-    steps.push_back({*same, first.fit.bundle.boards[i] * other.fit.bundle.boards[j].inverse()});
-  }
-  return steps;
-}
-
 std::optional<Pose> start_camera(std::span<const CameraStep> steps) {
   if (steps.empty()) return std::nullopt;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();

@@ -33,7 +33,6 @@ struct CameraStep {
   std::size_t view = 0;  ///< Index of the view in the given views.
   Pose X_1C;
 };
-[[nodiscard]] std::vector<CameraStep> camera_steps(const CameraAlone& first, const CameraAlone& other);
 
 /// Returns the mean pose X_1C over the views; empty if there are no views.
 [[nodiscard]] std::optional<Pose> start_camera(std::span<const CameraStep> steps);

@@ -1,17 +1,16 @@
 #include "flexura/board/board_finder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
-#include <opencv2/features2d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "flexura/board/board_beyond.h"
+#include "flexura/board/board_search.h"
 
 namespace flexura {
 namespace {
@@ -19,27 +18,8 @@ namespace {
 using Eigen::Vector2d;
 using Corners = std::vector<cv::Point2f>;
 
-// Returns the smallest distance of neighbours in a row or a column, px.
-double least_spacing(const Corners& corners, const BoardTarget& board) {
-  double least = std::numeric_limits<double>::infinity();
-  const auto columns = static_cast<std::size_t>(board.columns);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (i % columns != 0) least = std::min(least, cv::norm(corners[i] - corners[i - 1]));
-    if (i >= columns) least = std::min(least, cv::norm(corners[i] - corners[i - columns]));
-  }
-  return least;
-}
-
-// Half the window in which a corner is refined: ten pixels wide, or a quarter of a square if squares are
-// large, without the neighbours' corners.
-int half_window(double spacing) {
-  constexpr double usual = 5, least = 2;
-  const double desired = std::max(usual, spacing / 8);
-  return static_cast<int>(std::floor(std::clamp(desired, least, std::max(least, 0.5 * spacing - 1))));
-}
-
-// Returns whether neighbouring pixels are uncorrelated, as behind a lens cap. OpenCV would search squares in
-// each grain for minutes, in large pictures for hours. A board's squares are several pixels wide.
+// Returns whether neighbouring pixels are uncorrelated, as behind a lens cap. A board's squares are several
+// pixels wide.
 bool is_noise(const Image<std::uint8_t>& gray) {
   const auto values = gray.values();
   double sum = 0, squares = 0;
@@ -60,28 +40,47 @@ bool is_noise(const Image<std::uint8_t>& gray) {
   return mean_step(1) > most && mean_step(width) > most;
 }
 
-bool find_corners(const cv::Mat& picture, const BoardTarget& board, Corners& corners) {
-  if (!cv::findChessboardCorners(picture, {board.columns, board.rows}, corners,
-                                 cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE))
-    return false;
-  const int half = half_window(least_spacing(corners, board));
-  cv::cornerSubPix(picture, corners, {half, half}, {-1, -1},
-                   cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-6));
+// Refines points from a reduced picture up to the picture itself.
+bool refine_up(const std::vector<cv::Mat>& pictures, std::size_t level, const BoardSearch& search,
+               const BoardTarget& board, Corners& corners) {
+  if (board.pattern == BoardPattern::chessboard && !search.refine(pictures[level], corners)) return false;
+  while (level > 0) {
+    --level;
+    for (cv::Point2f& corner : corners) corner = 2 * corner + cv::Point2f(0.5F, 0.5F);
+    // Circles are measured once, in the picture itself.
+    const bool is_due = board.pattern == BoardPattern::chessboard || level == 0;
+    if (is_due && !search.refine(pictures[level], corners)) return false;
+  }
   return true;
 }
 
-bool find_circles(const cv::Mat& picture, const BoardTarget& board, Corners& corners) {
-  // OpenCV's default limits are for pictures of 640 x 480 px.
-  cv::SimpleBlobDetector::Params blobs;
-  blobs.minArea = 10;
-  blobs.maxArea = static_cast<float>(picture.total()) / static_cast<float>(board.columns);
-  blobs.minDistBetweenBlobs = 3;
-  // The search for the grid uses random numbers: equal ones for every picture.
-  cv::setRNGSeed(1);
-  const int kind =
-      board.pattern == BoardPattern::circles ? cv::CALIB_CB_SYMMETRIC_GRID : cv::CALIB_CB_ASYMMETRIC_GRID;
-  return cv::findCirclesGrid(picture, {board.columns, board.rows}, corners, kind,
-                             cv::SimpleBlobDetector::create(blobs));
+// Searches reduced pictures first: there, noise is smaller and the work is bounded.
+bool search_levels(const cv::Mat& picture, const BoardTarget& board, Corners& corners,
+                   BoardObservation& observation) {
+  const std::vector<cv::Mat> pictures = reduced_pictures(picture);
+  std::size_t first = 0;
+  while (first + 1 < pictures.size() && static_cast<double>(pictures[first].total()) > first_search_pixels)
+    ++first;
+  std::vector<std::size_t> levels = {first};
+  if (first + 1 < pictures.size()) levels.push_back(first + 1);
+  if (first > 0 && static_cast<double>(pictures[first - 1].total()) <= last_search_pixels)
+    levels.push_back(first - 1);
+  BoardSearch search(board);
+  bool is_found = false;
+  for (std::size_t i = 0; i < levels.size() && !is_found; ++i)
+    is_found =
+        search.find(pictures[levels[i]], corners) && refine_up(pictures, levels[i], search, board, corners);
+  observation.work = search.work();
+  if (is_found) return true;
+  observation.reason = "the picture does not contain a complete board of this size";
+  // Of the reduced picture searched first.
+  Corners unused;
+  if (board.pattern == BoardPattern::chessboard || search.find(pictures[first], unused)) return false;
+  const cv::Size other = search.other_grid();
+  if (other.width > 0)
+    observation.reason = fmt::format("the picture shows a grid of {}x{} circles, not of {}x{}", other.width,
+                                     other.height, board.columns, board.rows);
+  return is_found;
 }
 
 // Twice the signed area of the triangle a, b, c: positive for a rotation from u to v.
@@ -103,7 +102,7 @@ double brightness(const Image<std::uint8_t>& gray, const std::vector<Vector2d>& 
 }
 
 // Brings the points into the same order for all cameras, as far as the board determines the order.
-void put_in_order(const Image<std::uint8_t>& gray, const BoardTarget& board, std::vector<Vector2d>& pixels) {
+void order_as_seen(const Image<std::uint8_t>& gray, const BoardTarget& board, std::vector<Vector2d>& pixels) {
   const auto columns = static_cast<std::size_t>(board.columns), rows = pixels.size() / columns;
   // The order is mirrored, as if the board were seen from behind.
   if (board.pattern != BoardPattern::asymmetric_circles &&
@@ -126,14 +125,13 @@ BoardObservation find_board(const Image<std::uint8_t>& gray, const BoardTarget& 
   // OpenCV only reads it.
   const cv::Mat picture(gray.height(), gray.width(), CV_8U, const_cast<std::uint8_t*>(gray.values().data()));
   Corners corners;
+  BoardObservation observation;
   bool is_found = false;
   try {
-    is_found = board.pattern == BoardPattern::chessboard ? find_corners(picture, board, corners)
-                                                         : find_circles(picture, board, corners);
+    is_found = search_levels(picture, board, corners, observation);
   } catch (const cv::Exception&) {
     is_found = false;  // For example a picture too small for the search.
   }
-  BoardObservation observation;
   const auto is_inside = [&](const cv::Point2f& at) {
     return at.x >= 0 && at.y >= 0 && at.x <= static_cast<float>(gray.width() - 1) &&
            at.y <= static_cast<float>(gray.height() - 1);
@@ -141,15 +139,17 @@ BoardObservation find_board(const Image<std::uint8_t>& gray, const BoardTarget& 
   if (!is_found ||
       corners.size() != static_cast<std::size_t>(board.columns) * static_cast<std::size_t>(board.rows) ||
       !std::ranges::all_of(corners, is_inside)) {
-    observation.reason = "the picture does not contain a complete board of this size";
+    if (observation.reason.empty())
+      observation.reason = "the picture does not contain a complete board of this size";
     return observation;
   }
   for (const cv::Point2f& corner : corners) observation.pixels.emplace_back(corner.x, corner.y);
   if (goes_on(gray, board, observation.pixels))
     return {.pixels = {},
             .reason = "a part of a larger board: the pattern continues beyond the found points",
-            .is_larger = true};
-  put_in_order(gray, board, observation.pixels);
+            .is_larger = true,
+            .work = observation.work};
+  order_as_seen(gray, board, observation.pixels);
   return observation;
 }
 

@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
 #include <string>
 #include <variant>
 #include <vector>
@@ -88,6 +90,48 @@ TEST_F(RealBoards, GiveThePairTheKnownResidual) {
   ASSERT_TRUE(pair.is_found);
   EXPECT_NEAR(pair.rms, 0.2150, 0.005 * 0.2150);
   EXPECT_NEAR(pair.poses[1].position.x(), 0.0832, 0.0003);
+}
+
+// The outermost column is dropped: 8x6 corners look the same upside down. Each camera counts some views from
+// the other end. OpenCV gets the corners in equal order.
+TEST_F(RealBoards, GiveThePairOfOpenCVWhereTheOrderIsAmbiguous) {
+  const BoardTarget part{.columns = 8, .rows = 6};
+  const auto part_points = part.points();
+  std::vector<BoardView> views;
+  std::vector<std::vector<cv::Point3f>> there;
+  std::array<std::vector<std::vector<cv::Point2f>>, 2> seen;
+  for (const BoardView& pair : pairs()) {
+    if (views.size() == 11) break;
+    BoardView& view = views.emplace_back();
+    auto& places = there.emplace_back();
+    for (const auto& point : part_points)
+      places.emplace_back(static_cast<float>(point.x()), static_cast<float>(point.y()), 0.0F);
+    for (std::size_t camera = 0; camera < 2; ++camera) {
+      auto& pixels = view.pixels.emplace_back();
+      auto& own = seen[camera].emplace_back();
+      for (std::size_t i = 0; i < pair.pixels[camera].size(); ++i) {
+        if (i % 9 == 8) continue;
+        pixels.push_back(pair.pixels[camera][i]);
+        own.emplace_back(static_cast<float>(pixels.back().x()), static_cast<float>(pixels.back().y()));
+      }
+      if ((views.size() * (camera + 2)) % 3 == 1) std::ranges::reverse(pixels);
+    }
+  }
+  const cv::Size size(640, 480);
+  const cv::TermCriteria end(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 200, 1e-12);
+  std::array<cv::Mat, 2> K, distortion;
+  std::vector<cv::Mat> rotations, positions;
+  for (std::size_t i = 0; i < 2; ++i)
+    cv::calibrateCamera(there, seen[i], size, K[i], distortion[i], rotations, positions, 0, end);
+  cv::Mat R, t, E, F;
+  const double rms = cv::stereoCalibrate(there, seen[0], seen[1], K[0], distortion[0], K[1], distortion[1],
+                                         size, R, t, E, F, cv::CALIB_USE_INTRINSIC_GUESS, end);
+  const IntrinsicsFit fit =
+      fit_intrinsics(part_points, views, two_sizes, {.distortion = 5, .orders = part.equal_orders()});
+  ASSERT_TRUE(fit.is_found) << fit.reason;
+  EXPECT_NEAR(fit.rms, rms, 0.001);
+  EXPECT_NEAR(fit.poses[1].position.norm(), cv::norm(t), 5e-5);
+  EXPECT_FALSE(fit_intrinsics(part_points, views, two_sizes).is_found) << "the order is ambiguous";
 }
 
 TEST_F(RealBoards, ArePredictedWhenTheyAreHeldOut) {

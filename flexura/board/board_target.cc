@@ -1,7 +1,10 @@
 #include "flexura/board/board_target.h"
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace flexura {
@@ -20,6 +23,22 @@ std::vector<Eigen::Vector2d> BoardTarget::points() const {
     }
   }
   return points;
+}
+
+std::vector<std::vector<std::size_t>> BoardTarget::equal_orders() const {
+  const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  std::vector<std::vector<std::size_t>> orders(1, std::vector<std::size_t>(count));
+  std::iota(orders[0].begin(), orders[0].end(), std::size_t{0});
+  if (!is_ambiguous()) return orders;
+  orders.emplace_back(orders[0].rbegin(), orders[0].rend());
+  if (columns != rows || pattern == BoardPattern::asymmetric_circles) return orders;
+  const auto side = static_cast<std::size_t>(columns);
+  std::vector<std::size_t> quarter;
+  for (std::size_t row = 0; row < side; ++row)
+    for (std::size_t column = 0; column < side; ++column) quarter.push_back(column * side + (side - 1 - row));
+  orders.emplace_back(quarter.rbegin(), quarter.rend());
+  orders.push_back(std::move(quarter));
+  return orders;
 }
 
 bool BoardTarget::is_ambiguous() const {

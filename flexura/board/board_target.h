@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,12 @@ struct BoardTarget {
 
   /// Returns the points in the board's plane, m, row by row. The first point is (0, 0).
   [[nodiscard]] std::vector<Eigen::Vector2d> points() const;
+  /// Returns the orders of the points in which the board looks the same, its own order first. In the k-th
+  /// order, point i is point k[i] of the own order. An ambiguous board has two orders, or four if it has as
+  /// many columns as rows; other boards have one.
+  [[nodiscard]] std::vector<std::vector<std::size_t>> equal_orders() const;
   /// Returns whether a picture does not determine which of two opposite corners is the first point. In this
-  /// case, two cameras may choose different corners.
+  /// case, two cameras may choose different corners; their common views then decide (intrinsics_fit.h).
   [[nodiscard]] bool is_ambiguous() const;
 };
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -19,6 +20,7 @@
 #include "flexura/base/degree.h"
 #include "flexura/board/board_alone.h"
 #include "flexura/board/board_certainty.h"
+#include "flexura/board/board_order.h"
 #include "flexura/board/board_start.h"
 
 namespace flexura {
@@ -35,11 +37,20 @@ constexpr const char* untilted =
     "expected boards "
     "tilted to different sides";
 
+constexpr double best_noise = 0.05;  // px, of the best pictures.
+
 // Undetermined unknowns diverge although the fit explains the views.
-const char* why_not_converged(const BundleFit& fit) {
+std::string why_not_converged(const BundleFit& fit, const LensMisfit& misfit, int distortion) {
   constexpr double good = 2;  // px
   const bool is_explained = fit.points > 0 && rms_of(fit.square_sum, fit.points) < good;
-  return is_explained ? untilted : "no lens explains the views";
+  if (is_explained) return untilted;
+  return misfit.is_systematic() ? misfit.reason(distortion) : "no lens explains the views";
+}
+
+bool is_seen_only_by(std::size_t camera, const BoardView& view) {
+  for (std::size_t i = 0; i < view.pixels.size(); ++i)
+    if (i != camera && !view.pixels[i].empty()) return false;
+  return true;
 }
 
 class Calibration {
@@ -47,6 +58,10 @@ class Calibration {
   Calibration(std::span<const Vector2d> points, std::span<const BoardView> views, std::span<const Size> sizes,
               const IntrinsicsConfig& config)
       : points_(points), views_(views), sizes_(sizes), config_(config) {
+    if (config_.orders.empty()) {
+      config_.orders.emplace_back(points.size());
+      std::iota(config_.orders[0].begin(), config_.orders[0].end(), std::size_t{0});
+    }
     check();
     result_.is_held_out.assign(views.size(), false);
     result_.boards.resize(views.size());
@@ -66,7 +81,9 @@ class Calibration {
     if (!find_start(start)) return std::move(result_);
     const BundleFit fit = fit_bundle(points_, fitted_, start, bundle_config(1e-12));
     if (std::string reason = why_apart(fit); !reason.empty()) return fail(std::move(reason));
-    if (!fit.is_converged) return fail(why_not_converged(fit));
+    if (!fit.is_converged)
+      return fail(why_not_converged(fit, worst_misfit(points_, fitted_, fit.bundle), config_.distortion));
+    if (std::string reason = why_ambiguous(fit); !reason.empty()) return fail(std::move(reason));
     take(fit);
     report_views();
     predict();
@@ -85,6 +102,9 @@ class Calibration {
     }
     if (config_.distortion < 0 || config_.distortion > 5)
       throw std::invalid_argument("the number of estimated distortion coefficients must be 0 to 5");
+    for (const PointOrder& order : config_.orders)
+      if (order.size() != points_.size())
+        throw std::invalid_argument("an order of the board's points has a wrong number of points");
   }
 
   [[nodiscard]] BundleConfig bundle_config(double least_gain) const {
@@ -109,11 +129,12 @@ class Calibration {
                          fmt::format("{} to fit: expected at least two views, from different directions",
                                      own.views.empty() ? "no view of the board" : "one view of the board");
       } else if (!own.fit.is_converged) {
-        result_.reason = camera_text(camera) + why_not_converged(own.fit);
+        result_.reason = camera_text(camera) +
+                         why_not_converged(own.fit, misfit_of_alone(own, camera), config_.distortion);
       }
       if (!result_.reason.empty()) return false;
       start.lenses.push_back(own.fit.bundle.lenses.front());
-      if (camera > 0) steps_.push_back(camera_steps(alone.front(), own));
+      if (camera > 0) choose_order(camera, alone.front(), own);
       const auto pose = camera == 0 ? std::optional(Pose{}) : start_camera(steps_.back());
       if (!pose) {
         result_.reason = camera_text(camera) + "no view of the board together with camera 1";
@@ -130,6 +151,8 @@ class Calibration {
         if (at == seen.end()) continue;
         start.boards.push_back(start.cameras[camera] *
                                alone[camera].fit.bundle.boards[static_cast<std::size_t>(at - seen.begin())]);
+        if (camera > 0)
+          put_in_best_order(points_, config_.orders, start, camera, start.boards.back(), fitted_[view]);
       }
       // Pixels on a line: no camera determines the pose of that board.
       if (start.boards.size() == view) {
@@ -138,6 +161,60 @@ class Calibration {
       }
     }
     return true;
+  }
+
+  [[nodiscard]] LensMisfit misfit_of_alone(const CameraAlone& own, std::size_t camera) const {
+    if (own.fit.bundle.lenses.empty()) return {};
+    std::vector<BoardView> views;
+    views.reserve(own.views.size());
+    for (const std::size_t view : own.views) views.push_back({{fitted_[view].pixels[camera]}});
+    return lens_misfit(points_, views, own.fit.bundle, 0);
+  }
+
+  // Brings a camera's points into the first camera's order, as the common views agree.
+  void choose_order(std::size_t camera, const CameraAlone& first, const CameraAlone& own) {
+    auto choices = order_choices(points_, first, own, config_.orders);
+    if (choices.size() > 1) {
+      Doubt& doubt = doubts_.emplace_back(camera, std::move(choices[1].steps));
+      doubt.views = fitted_;
+      reorder(camera, doubt.steps, choices[1].orders, doubt.views);
+    }
+    if (!choices.empty()) reorder(camera, choices[0].steps, choices[0].orders, fitted_);
+    steps_.push_back(choices.empty() ? std::vector<CameraStep>{} : std::move(choices[0].steps));
+  }
+
+  void reorder(std::size_t camera, std::span<const CameraStep> steps, std::span<const std::size_t> orders,
+               std::vector<BoardView>& views) const {
+    for (std::size_t i = 0; i < steps.size(); ++i)
+      put_in_order(config_.orders[orders[i]], views[steps[i].view].pixels[camera]);
+  }
+
+  // Returns why the order of a camera's points stays unknown; "" if the views determine it.
+  [[nodiscard]] std::string why_ambiguous(const BundleFit& fit) const {
+    constexpr double clearly_worse = 2;
+    const double rms = rms_of(fit.square_sum, fit.points);
+    for (const Doubt& doubt : doubts_) {
+      std::vector<BoardView> views = fitted_;
+      for (std::size_t i = 0; i < views.size(); ++i)
+        views[i].pixels[doubt.camera] = doubt.views[i].pixels[doubt.camera];
+      BoardBundle other = fit.bundle;
+      const auto pose = start_camera(doubt.steps);
+      if (!pose) continue;
+      // Boards that only this camera saw move with it.
+      for (std::size_t i = 0; i < views.size(); ++i)
+        if (is_seen_only_by(doubt.camera, views[i]))
+          other.boards[i] = *pose * other.cameras[doubt.camera].inverse() * other.boards[i];
+      other.cameras[doubt.camera] = *pose;
+      const BundleFit second = fit_bundle(points_, views, other, bundle_config(1e-7));
+      const double second_rms = rms_of(second.square_sum, second.points);
+      if (second.points == 0 || second_rms > clearly_worse * std::max(rms, best_noise)) continue;
+      return fmt::format(
+          "{}the board looks the same upside down, and its points fit in two orders, to {:.2g} and {:.2g} "
+          "px: expected more views with the board at other places and tilts, or a board with one even and "
+          "one odd number of corners",
+          camera_text(doubt.camera), rms, second_rms);
+    }
+    return "";
   }
 
   // Returns why cameras that fit well alone have no relative poses that explain all views; "" if they do.
@@ -220,6 +297,7 @@ class Calibration {
         sum += part, count += points_.size();
       }
       own.rms = rms_of(sum, count);
+      own.misfit = lens_misfit(points_, fitted_, bundle_, camera);
     }
   }
 
@@ -230,19 +308,22 @@ class Calibration {
     for (std::size_t view = 0; view < views_.size(); ++view) {
       if (!result_.is_held_out[view]) continue;
       BoardBundle start{bundle_.lenses, bundle_.cameras, {}};
+      std::vector<BoardView> own = {views_[view]};
       for (std::size_t camera = 0; camera < sizes_.size() && start.boards.empty(); ++camera) {
         if (views_[view].pixels[camera].empty()) continue;
         const auto pose = start_pose(Lens(bundle_.lenses[camera]), points_, views_[view].pixels[camera]);
-        if (pose) start.boards.push_back(bundle_.cameras[camera] * *pose);
+        if (!pose) continue;
+        start.boards.push_back(bundle_.cameras[camera] * *pose);
+        put_in_best_order(points_, config_.orders, bundle_, camera, start.boards.back(), own.front());
       }
       if (start.boards.empty()) continue;
-      const BundleFit fit = fit_bundle(points_, views_.subspan(view, 1), start, {.cameras = false});
+      const BundleFit fit = fit_bundle(points_, own, start, {.cameras = false});
       if (!fit.is_converged) continue;
       result_.boards[view] = fit.bundle.boards.front();
       sum += fit.square_sum, count += fit.points;
       for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
         if (views_[view].pixels[camera].empty()) continue;
-        const auto part = square_sum(points_, views_[view], bundle_, camera, fit.bundle.boards.front());
+        const auto part = square_sum(points_, own.front(), bundle_, camera, fit.bundle.boards.front());
         if (part) result_.cameras[camera].view_rms[view] = rms_of(*part, points_.size());
       }
     }
@@ -259,14 +340,19 @@ class Calibration {
   void judge() {
     for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
       judge(camera);
+      constexpr double useless = 2;  // px
+      const LensMisfit& misfit = result_.cameras[camera].misfit;
+      if (misfit.is_systematic() && misfit.rms > useless)
+        result_.reason = camera_text(camera) + misfit.reason(config_.distortion);
       const auto& undetermined = result_.cameras[camera].undetermined;
-      if (!undetermined.empty() && undetermined.front() < 4) result_.reason = camera_text(camera) + untilted;
+      if (result_.reason.empty() && !undetermined.empty() && undetermined.front() < 4)
+        result_.reason = camera_text(camera) + untilted;
     }
     result_.is_found = result_.reason.empty();
   }
 
   void judge(std::size_t camera) {
-    constexpr double best_noise = 0.05, largest_share = 0.01;
+    constexpr double largest_share = 0.01;
     CameraFit& own = result_.cameras[camera];
     const auto [width, height] = sizes_[camera];
     const double largest = largest_share * std::hypot(width, height);
@@ -291,6 +377,13 @@ class Calibration {
   std::vector<std::size_t> numbers_;  // Of the fitted views.
   std::vector<BoardView> fitted_;
   std::vector<std::vector<CameraStep>> steps_;  // Of each camera except the first.
+  // A second order of a camera's points, which the views may not rule out.
+  struct Doubt {
+    std::size_t camera = 0;
+    std::vector<CameraStep> steps;
+    std::vector<BoardView> views = {};
+  };
+  std::vector<Doubt> doubts_;
   BoardBundle bundle_;
   MatrixXd unit_covariance_;
   IntrinsicsFit result_;

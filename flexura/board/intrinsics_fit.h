@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "flexura/board/board_bundle.h"
+#include "flexura/board/lens_misfit.h"
 #include "flexura/camera/intrinsics.h"
 #include "flexura/math/pose.h"
 
@@ -20,6 +21,10 @@ struct IntrinsicsConfig {
   int distortion = 5;
   /// N = hold_out: every Nth view is excluded from the fit and only predicted; 0: all views are fitted.
   int hold_out = 0;
+  /// Orders of the board's points in which the board looks the same (BoardTarget::equal_orders()); empty: one
+  /// order. If there are several, cameras may count the points differently. The order that all common views
+  /// agree on is used. The fit fails if a second order fits, too.
+  std::vector<std::vector<std::size_t>> orders = {};
 };
 
 /// Lens of one camera, estimated from views of a board.
@@ -44,6 +49,8 @@ struct CameraFit {
   /// distance, a parameter that moves the image's corners that far is undetermined too. The error of observed
   /// pixels is assumed to be at least 0.05 px.
   std::vector<int> undetermined;
+
+  LensMisfit misfit;  ///< Structure of the residuals in the fitted views.
 
   /// Returns the standard deviation of an intrinsic parameter, in its unit. `parameter` is the index in the
   /// order of `intrinsics_count`.

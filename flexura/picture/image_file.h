@@ -32,9 +32,10 @@ struct PngConfig {
 ///
 /// The result has one channel for gray, including palettes of only grays, and otherwise three channels (red,
 /// green, blue). Values with up to 8 bits are scaled to 0 to 255. Values with more bits are as in the file,
-/// stored in 16 bits. Orientation, alpha and colour profile of the file are ignored. Transparent parts keep
-/// their colour. For other common kinds (BMP, WebP, JPEG 2000, OpenEXR, ...), the error message states the
-/// kind.
+/// stored in 16 bits. The picture is upright: the
+/// orientation in EXIF data (JPEG, PNG) or TIFF tags is heeded. Alpha and colour profile are ignored.
+/// Transparent parts keep their colour. For other common kinds (BMP, WebP, JPEG 2000, OpenEXR, ...), the
+/// error message states the kind.
 ///
 /// Throws InputError with one line, which begins with `name`, if the file is of another kind, truncated,
 /// damaged or without pixels. Also throws InputError for more than `most_pixels` pixels, before allocating

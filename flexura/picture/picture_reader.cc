@@ -6,6 +6,7 @@
 
 #include "flexura/base/source.h"
 #include "flexura/picture/image_file.h"
+#include "flexura/picture/orientation.h"
 #include "flexura/picture/picture_kinds.h"
 
 namespace flexura {
@@ -57,7 +58,7 @@ Picture read_any(std::span<const std::uint8_t> file, std::size_t most_pixels) {
   const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
   if (text.empty()) throw std::runtime_error("the file is empty");
   for (const KnownKind& kind : known_kinds)
-    if (text.starts_with(kind.begin)) return kind.read(file, most_pixels);
+    if (text.starts_with(kind.begin)) return upright(kind.read(file, most_pixels), orientation_in(file));
   if (is_pnm(text)) return read_pnm(file, most_pixels);
   for (const OtherKind& kind : other_kinds)
     if (text.substr(std::min(kind.at, text.size())).starts_with(kind.begin))

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <utility>
 
 #include "flexura/vision/arm_finder.h"
 #include "flexura/vision/picture_file.h"
@@ -86,23 +85,25 @@ TEST(ArmScene, FindsAnArmInARegion) {
 
 TEST(ArmScene, FindsAnArmBeforeAKnownBackground) {
   ArmFinder finder;
-  for (const int channels : {1, 3}) {
+  struct Light {
+    int channels;
+    double gain, offset;
+  };
+  for (const auto& [channels, gain, offset] : {Light{1, 1, 0}, {1, 0.85, 0}, {3, 1.1, 8}}) {
     const DrawnScene empty = clutter(channels);
     DrawnScene with_arm = empty;
     with_arm.arc(arc_u, arc_v, arc_radius, 18, arm_gray);
     const Image<std::uint8_t> picture = with_arm.photograph(1.5, 3);
-    for (const auto& [gain, offset] : {std::pair{1.0, 0.0}, {0.85, 0.0}, {1.1, 8.0}}) {
-      Image<std::uint8_t> background = empty.photograph(1.5, 4);
-      for (std::uint8_t& value : background.values())
-        value = static_cast<std::uint8_t>(std::clamp(std::lround((value - offset) / gain), 0L, 255L));
-      const ArmObservation& found = find_in(finder, {.background = background}, picture);
-      const double error = arc_error(found);
-      std::printf("%d channels, gain %.2f: rms error %.3f px, covered %.2f, contrast %.0f\n", channels, gain,
-                  error, found.covered, found.contrast);
-      EXPECT_LT(error, 0.12);
-    }
-    EXPECT_FALSE(
-        find_in(finder, {.background = empty.photograph(1.5, 5)}, empty.photograph(1.5, 6)).is_found());
+    Image<std::uint8_t> background = empty.photograph(1.5, 4);
+    for (std::uint8_t& value : background.values())
+      value = static_cast<std::uint8_t>(std::clamp(std::lround((value - offset) / gain), 0L, 255L));
+    const ArmObservation& found = find_in(finder, {.background = background}, picture);
+    const double error = arc_error(found);
+    std::printf("%d channels, gain %.2f: rms error %.3f px, covered %.2f, contrast %.0f\n", channels, gain,
+                error, found.covered, found.contrast);
+    EXPECT_LT(error, 0.05);
+    if (gain >= 1) continue;
+    EXPECT_FALSE(find_in(finder, {.background = background}, empty.photograph(1.5, 6)).is_found());
   }
   const Image<std::uint8_t> small(320, 240);
   EXPECT_THAT(find_in(finder, {.background = small}, clutter(1).photograph(1, 1)).reason,

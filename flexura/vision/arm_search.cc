@@ -90,11 +90,13 @@ bool ArmSearch::run(const Image<Value>& picture, const Image<std::uint8_t>& gray
 }
 
 bool ArmSearch::is_clear() {
-  constexpr double enough = 0.8, too_much = 1.5, slender = 20;
+  constexpr double enough = 0.8, too_much = 3, slender = 20;
   if (!seen.is_found() || seen.contradicts || seen.covered <= enough || seen.covered > too_much) return false;
+  const double width = median_width(seen.axis, widths_);
+  if (seen.blur > std::max(least_blurred, blurred_share * width)) return false;
   const auto is_lost = [](const AxisEnd& end) { return end.kind == AxisEndKind::lost; };
   return seen.is_closed || !std::ranges::all_of(seen.ends, is_lost) ||
-         (order_.size() == 1 && length_of(seen.axis) > slender * median_width(seen.axis, widths_));
+         (order_.size() == 1 && length_of(seen.axis) > slender * width);
 }
 
 void ArmSearch::segment(const Image<std::uint8_t>& gray, const ThresholdConfig& threshold) {

@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "flexura/app/scene_arguments.h"
 #include "flexura/app/threshold_arguments.h"
 #include "flexura/base/node.h"
 #include "flexura/camera/measured_camera.h"
@@ -19,6 +21,8 @@ namespace flexura {
 struct EstimateConfig {
   ShapePrior prior;  ///< Prior knowledge about the arm.
   ThresholdConfig threshold;
+  /// What tells the arm from its surroundings in each picture; empty or null: brightness alone.
+  std::vector<std::shared_ptr<const ArmScene>> scenes;
   EstimatorConfig estimator;
   std::size_t points = 101;  ///< Number of backbone points in the answer; at least 2.
   /// Whether the answer includes the bends of the sections; the arm's file must then describe the sections.
@@ -35,6 +39,7 @@ struct EstimateArguments {
   /// Positions of the arm's bands: arc lengths, m ("0.25"), or shares of the length ("25%"). Empty: unknown.
   std::vector<std::string> markers;
   ThresholdArguments threshold;
+  SceneArguments scene;
   std::int64_t points = 101;  ///< Number of backbone points to print.
 };
 

@@ -57,7 +57,11 @@ MeasureConfig config_of(const MeasureArguments& arguments) {
   if (config.what == MeasureTarget::circle || config.what == MeasureTarget::etalon) {
     for (const auto& [option, is_given] : {std::pair{"--base", !arguments.base.empty()},
                                            {"--camera", !arguments.camera.empty()},
-                                           {"--radius", arguments.radius.has_value()}})
+                                           {"--radius", arguments.radius.has_value()},
+                                           {"--region", !arguments.scene.regions.empty()},
+                                           {"--background", !arguments.scene.backgrounds.empty()},
+                                           {"--color", !arguments.scene.color.empty()},
+                                           {"--mask", !arguments.scene.masks.empty()}})
       if (is_given)
         throw input_error(
             option, fmt::format("has no effect with --what {}: expected only for arms", arguments.what));
@@ -65,11 +69,20 @@ MeasureConfig config_of(const MeasureArguments& arguments) {
   return config;
 }
 
+void add_scenes(const MeasureArguments& arguments, std::vector<MeasureConfig>& configs) {
+  std::vector<double> gammas;
+  gammas.reserve(configs.size());
+  for (const MeasureConfig& config : configs) gammas.push_back(config.gamma);
+  const auto scenes = arm_scenes(arguments.scene, gammas);
+  for (std::size_t i = 0; i < scenes.size(); ++i) configs[i].finder.scene = scenes[i];
+}
+
 // Returns the settings for each picture, with the camera that took it if there is a file of cameras.
 std::vector<MeasureConfig> configs_of(const MeasureArguments& arguments) {
   std::vector<MeasureConfig> configs(arguments.images.size(), config_of(arguments));
   if (arguments.camera.empty()) {
     if (arguments.radius) throw input_error("--radius", "needs --camera, a file of measured cameras");
+    add_scenes(arguments, configs);
     return configs;
   }
   const Node file = read_toml_file(arguments.camera);
@@ -83,6 +96,7 @@ std::vector<MeasureConfig> configs_of(const MeasureArguments& arguments) {
     configs[i].camera = camera;
     if (!arguments.gamma) configs[i].gamma = camera.gamma;
   }
+  add_scenes(arguments, configs);
   return configs;
 }
 

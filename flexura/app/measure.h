@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/app/scene_arguments.h"
 #include "flexura/app/threshold_arguments.h"
 #include "flexura/base/image.h"
 #include "flexura/base/node.h"
@@ -52,6 +53,7 @@ struct MeasureArguments {
   /// Gamma of the pictures. Default: the gamma in the file of cameras, or 1 without a file.
   std::optional<double> gamma;
   ThresholdArguments threshold;
+  SceneArguments scene;
   std::vector<double> base;  ///< Pixel of the arm's base, (u, v), px; empty: unknown.
   std::string overlay;       ///< Picture file to write; "": no file.
 };

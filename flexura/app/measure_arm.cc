@@ -119,6 +119,7 @@ bool measure_arm(const Job& job) {
   if (arm.is_found()) markers = find_markers(job.photograph.bytes, corrected);
   const bool is_found = arm.is_found() && (job.config.what == MeasureTarget::arm || !markers.markers.empty());
   job.answer.add("found", {is_found, {}});
+  if (arm.is_found()) job.answer.add("trusted", {!arm.contradicts, {}});
   if (!is_found) job.answer.add("reason", text_node(arm.is_found() ? "the arm has no markers" : arm.reason));
   if (!job.photograph.is_mask)
     if (auto note = hint_of_exposure(job.gray)) notes.push_back(std::move(*note));

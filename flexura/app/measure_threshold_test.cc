@@ -99,14 +99,17 @@ TEST_F(MeasureBy, OnlyBlocksFollowAnUnevenScreen) {
   EXPECT_LT(most, 0.3);
   // All but the dim end, where the contrast is a third of that at the bright end.
   EXPECT_GT(reach, 220);
-  for (const ThresholdMethod method : {ThresholdMethod::otsu, ThresholdMethod::two_mode}) {
-    MeasureConfig config;
-    config.finder.threshold.method = method;
-    const std::string file = png(picture);
-    const Measurement found = measure_picture(
-        {reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, "uneven.png", config);
-    EXPECT_TRUE(!found.is_found || off_and_reach(found.answer, line).second < 200);
-  }
+  MeasureConfig config;
+  config.finder.threshold.method = ThresholdMethod::two_mode;
+  const std::string file = png(picture);
+  const Measurement found = measure_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()},
+                                            "uneven.png", config);
+  EXPECT_TRUE(!found.is_found || off_and_reach(found.answer, line).second < 200);
+  // Otsu's method gives way to the blocks, or removes the screen's dark side, which is wider than the arm.
+  const Node otsu = measured_by(picture, {});
+  const auto [otsu_most, otsu_reach] = off_and_reach(otsu, line);
+  EXPECT_LT(otsu_most, 0.3);
+  EXPECT_GT(otsu_reach, 190);
 }
 
 TEST_F(MeasureBy, AFixedLevelAndTheFigureAreHeeded) {

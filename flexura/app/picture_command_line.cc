@@ -46,6 +46,21 @@ void add_threshold_options(CLI::App& command, ThresholdArguments& threshold) {
       ->type_name("dark|bright");
 }
 
+void add_scene_options(CLI::App& command, SceneArguments& scene) {
+  const auto add = [&](const char* name, std::vector<std::string>& values, const char* type,
+                       const char* text) {
+    command.add_option(name, values, text)->type_name(type)->allow_extra_args(false);
+  };
+  add("--region", scene.regions, "U,V,...",
+      "Search only here: two corners of a rectangle, or three or more of a polygon, px; once, or per "
+      "picture");
+  add("--background", scene.backgrounds, "FILE",
+      "Picture of the same view without the arm: search only what differs; once, or per picture");
+  command.add_option("--color", scene.color, "Colour of the arm, 0 to 255: search only what has this colour")
+      ->type_name("R,G,B");
+  add("--mask", scene.masks, "FILE", "Mask of the arm, made elsewhere: white on black; once, or per picture");
+}
+
 void add_measure(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<MeasureArguments>();
   CLI::App* measure =
@@ -69,6 +84,7 @@ void add_measure(CLI::App& app, Command& chosen) {
                    "Gamma of the pictures: value = light^(1/G); 2.2 for most cameras' files")
       ->type_name("G");
   add_threshold_options(*measure, arguments->threshold);
+  add_scene_options(*measure, arguments->scene);
   measure->add_option("--base", arguments->base, "Pixel near the base of the arm: U,V")
       ->type_name("U,V")
       ->delimiter(',')
@@ -110,6 +126,7 @@ void add_estimate(CLI::App& app, Command& chosen) {
       ->allow_extra_args(false)
       ->type_name("S,...");
   add_threshold_options(*estimate, arguments->threshold);
+  add_scene_options(*estimate, arguments->scene);
   estimate
       ->add_option("--points", arguments->points,
                    "Number of points of the printed backbone, at least 2 (default: 101)")

@@ -40,6 +40,9 @@ class SteppedDevices : public DeviceAccess {
   [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const ViscaBusConfig& /*config*/) override {
     return PortFault{FaultKind::link_lost, "no heads"};
   }
+  [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const OnvifConfig& /*config*/) override {
+    return PortFault{FaultKind::link_lost, "no heads"};
+  }
   [[nodiscard]] std::shared_ptr<V4l2Calls> calls(const V4l2HeadConfig& /*config*/) override {
     return nullptr;
   }

@@ -3,77 +3,40 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
-#include <numbers>
-#include <stdexcept>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "flexura/base/table.h"
-#include "flexura/vision/axis_curve.h"
-#include "flexura/vision/border.h"
+#include "flexura/vision/arm_scene.h"
+#include "flexura/vision/arm_search.h"
 #include "flexura/vision/eight_bits.h"
 #include "flexura/vision/picture_file.h"
-#include "flexura/vision/runs.h"
-#include "flexura/vision/tube_seeds.h"
-#include "flexura/vision/tube_tracker.h"
+#include "flexura/vision/picture_frame.h"
 
 namespace flexura {
 namespace {
 
-// Limits of the border model. Borders with more blur (px, or as a share of the arm's width) are not modelled.
-// Arms of less contrast may be lost in noise.
-constexpr double least_blurred = 2, blurred_share = 0.12, faint = 30;
-
-// Number of pixels that suffice for the histogram. The borders are measured separately.
-constexpr std::size_t histogram_samples = 12288;
-
-// Smaller figures are ignored as dust.
-constexpr std::int64_t least_area = 24;
-
-// Smallest ratio of length to width of a tube.
-constexpr double least_slenderness = 2.5;
-
-// If an axis covers less than this fraction of its figure, it is an edge of the figure, not an arm.
-constexpr double least_covered = 0.3;
-
-constexpr std::size_t most_tries = 4, most_seeds = 4;
-
-// If the axis covers more than this fraction, the rest is due to the ends and noise.
-constexpr double all_but_ends = 0.95;
-
-// Returns whether a point of the border belongs to the axis: its distance from the axis is half the width.
-bool is_explained(const BorderPoint& point, const std::vector<AxisSample>& axis) {
-  constexpr double close = 1.5;  // px, across and along the axis.
-  return std::ranges::any_of(axis, [&](const AxisSample& sample) {
-    const Eigen::Vector2d off = point.pixel - sample.pixel;
-    const double across = std::abs(off.dot(sample.normal));
-    return std::abs(across - 0.5 * sample.width) < close &&
-           off.squaredNorm() < across * across + close * close;
-  });
-}
-
-// Score of an axis: the covered share of the figure and the number of known ends.
-double merit(const ArmObservation& seen) {
-  const auto is_known = [](const AxisEnd& end) { return end.kind != AxisEndKind::lost; };
-  return std::min(seen.covered, 1.0) + 0.2 * static_cast<double>(std::ranges::count_if(seen.ends, is_known));
-}
-
-// Returns whether no other seed can give a better result.
-bool shows_all(const ArmObservation& seen) {
-  constexpr double whole = 0.85;
-  const auto is_lost = [](const AxisEnd& end) { return end.kind == AxisEndKind::lost; };
-  return seen.covered > whole && (seen.is_closed || std::ranges::none_of(seen.ends, is_lost));
-}
-
 double scale_of(const Image<std::uint8_t>&, int) { return 1; }
 double scale_of(const Image<std::uint16_t>&, int white) { return white / 255.0; }
+
+// Returns the picture blurred by a Gaussian of 1 px.
+template <typename Value>
+Image<Value> blurred(const Image<Value>& picture) {
+  Image<Value> result(picture.width(), picture.height());
+  const int type = std::is_same_v<Value, std::uint8_t> ? CV_8U : CV_16U;
+  const cv::Mat from(picture.height(), picture.width(), type, const_cast<Value*>(picture.values().data()));
+  cv::Mat to(result.height(), result.width(), type, result.values().data());
+  constexpr double blur = 1;
+  cv::GaussianBlur(from, to, {7, 7}, blur, blur, cv::BORDER_REPLICATE);
+  return result;
+}
 
 }  // namespace
 
@@ -84,33 +47,26 @@ const std::vector<std::string>& names_of(const AxisEndKind*) {
 
 struct ArmFinder::Work {
   ArmFinderConfig config;
-  ArmObservation seen, best;
-  Components components;
-  BlockThresholds blocks;
-  Image<std::uint8_t> bytes;  // Of a picture with more bits.
-  std::vector<std::uint32_t> order;
-  std::uint32_t followed = 0;  // The component that is the arm.
-  std::vector<TubeSeed> seeds;
-  std::vector<CrossSection> ahead, sections;
-  BlurredSteps steps;
-  AxisCurve curve;
-  double least_blur = 0;  // Of the places from which a component was followed, px.
+  ArmSearch search;
+  Image<std::uint8_t> bytes;      // Of a picture with more bits.
+  Image<std::uint8_t> cut_bytes;  // The part of a picture in which the arm is searched.
+  Image<std::uint16_t> cut_words;
 
-  [[nodiscard]] std::string reason_against_following(double width) const;
-  void segment(const Image<std::uint8_t>& gray);
+  void begin();
+  void search_from(const PixelBox& box);
   template <typename Value>
-  void find_axis(const Image<Value>& picture, double scale);
+  bool run(const Image<Value>& picture, const Image<std::uint8_t>& gray, double scale,
+           const ThresholdConfig& threshold);
   template <typename Value>
-  bool follow(const Image<Value>& picture, double scale, const Component& component);
+  bool try_methods(const Image<Value>& picture, const Image<std::uint8_t>& gray, double scale);
   template <typename Value>
-  void try_seeds(const Image<Value>& picture, double scale, const Component& component);
-  template <typename Value>
-  bool follow_from(const Image<Value>& picture, double scale, const Component& component,
-                   const TubeSeed& rough);
-  void order_ends();
-  void note_others();
-  void add_unexplained(const Image<std::uint8_t>& gray);
-  void add_places();
+  const ArmObservation& find(const Image<Value>& picture, const Image<std::uint8_t>& gray, double scale);
+  const ArmObservation& find_in_scene(const Image<std::uint8_t>& picture, const Image<std::uint16_t>* words,
+                                      int white);
+  const ArmObservation& end();
+
+  Image<std::uint8_t>& cut_of(const Image<std::uint8_t>&) { return cut_bytes; }
+  Image<std::uint16_t>& cut_of(const Image<std::uint16_t>&) { return cut_words; }
 };
 
 ArmFinder::ArmFinder(ArmFinderConfig config) : work_(std::make_unique<Work>()) {
@@ -120,236 +76,162 @@ ArmFinder::~ArmFinder() = default;
 ArmFinder::ArmFinder(ArmFinder&&) noexcept = default;
 ArmFinder& ArmFinder::operator=(ArmFinder&&) noexcept = default;
 
-void ArmFinder::Work::segment(const Image<std::uint8_t>& gray) {
-  if (gray.channels() != 1)
-    throw std::invalid_argument(
-        fmt::format("a picture with {} channels: expected a gray picture", gray.channels()));
-  order.clear();
-  seen.axis.clear();
-  seen.notes.clear();
-  seen.unexplained.clear();
-  seen.places.clear();
-  seen.ends = {};
-  seen.blur = seen.noise = seen.contrast = seen.covered = 0;
-  seen.is_closed = false;
-  seen.threshold = flexura::segment(gray, config.threshold, components, blocks, histogram_samples);
-  seen.reason = seen.threshold.reason;
-  if (!seen.reason.empty()) return;
-  seen.contrast = seen.threshold.bright - seen.threshold.dark;
+void ArmFinder::Work::begin() {
+  search.config = config;
+  search.origin = {0, 0};
+  search.inside = nullptr;
+  search.stops_at_frame = true;
 }
 
-template <typename Value>
-void ArmFinder::Work::find_axis(const Image<Value>& picture, double scale) {
-  order.clear();
-  for (std::uint32_t i = 0; i < components.list.size(); ++i)
-    if (components.list[i].area >= least_area) order.push_back(i);
-  std::ranges::stable_sort(order, std::ranges::greater{},
-                           [&](std::uint32_t i) { return components.list[i].area; });
-  if (order.empty()) {
-    seen.reason =
-        fmt::format("no figure with at least {} px is {} enough", least_area, name_of(seen.threshold.figure));
-    return;
-  }
-  std::string first_reason;
-  for (std::size_t i = 0; i < std::min(order.size(), most_tries); ++i) {
-    const Component& component = components.list[order[i]];
-    seen.reason.clear();
-    if (follow(picture, scale, component)) {
-      followed = order[i];
-      note_others();
-      add_places();
-      return;
-    }
-    if (i == 0) first_reason = seen.reason;
-  }
-  seen.reason = first_reason;
+// Searches in a part of the picture from now on.
+void ArmFinder::Work::search_from(const PixelBox& box) {
+  search.origin = {box.left, box.top};
+  if (config.base) search.config.base = *config.base - search.origin;
+  search.stops_at_frame = false;
 }
 
-// Tracks the tube of a component from the first seed that leads to both ends; if there is none, from the seed
-// that leads farthest.
+// Searches the arm. The border model does not hold for lines of one or two pixels without blur: these are
+// blurred first, which moves no centerline.
 template <typename Value>
-bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Component& component) {
-  tube_seeds(components, component, seeds);
-  if (seeds.empty()) {
-    seen.reason = "the figure has no end within the picture";
-    return false;
-  }
-  const double width = seeds.front().width;
-  if (static_cast<double>(component.area) < least_slenderness * width * width ||
-      component.on_border > 6 * width + 12) {
-    seen.reason = fmt::format(
-        "the largest figure is not a tube: it has {} px, a width of about {:.0f} px, and {} px on the "
-        "picture's border",
-        component.area, width, component.on_border);
-    return false;
-  }
-  best.axis.clear();
-  least_blur = std::numeric_limits<double>::infinity();
-  try_seeds(picture, scale, component);
-  if (best.axis.empty()) {
-    // If hairs form a larger part of the figure than the arm, the arm is the thickest tube.
-    std::ranges::stable_sort(seeds, std::ranges::greater{}, &TubeSeed::width);
-    try_seeds(picture, scale, component);
-  }
-  if (best.axis.empty()) {
-    seen.axis.clear();
-    seen.reason =
-        fmt::format("the borders of the figure ({} px, width about {:.0f} px) cannot be tracked: {}",
-                    component.area, width, reason_against_following(width));
-    return false;
-  }
-  seen = best;
-  for (AxisSample& sample : seen.axis) sample.sigma = std::max(sample.sigma, config.least_sigma);
-  order_ends();
+bool ArmFinder::Work::run(const Image<Value>& picture, const Image<std::uint8_t>& gray, double scale,
+                          const ThresholdConfig& threshold) {
+  if (!search.run(picture, gray, scale, threshold)) return false;
+  constexpr double thin = 4.5, sigma = 0.06;
+  if (search.seen.is_found() || search.thinnest() > thin) return true;
+  ArmObservation first = search.seen;
+  search.config.least_sigma = std::max(config.least_sigma, sigma);
+  search.run(blurred(picture), blurred(gray), scale, threshold);
+  search.config.least_sigma = config.least_sigma;
+  if (!search.is_clear()) search.seen = std::move(first);
   return true;
 }
 
-std::string ArmFinder::Work::reason_against_following(double width) const {
-  if (std::isfinite(least_blur) && least_blur > std::max(least_blurred, blurred_share * width))
-    return fmt::format("their blur is about {:.0f} px", least_blur);
-  const double contrast = seen.threshold.bright - seen.threshold.dark;
-  if (contrast < faint)
-    return fmt::format("it is not a tube, points at the camera, or is too faint (contrast {:.0f} of 255)",
-                       contrast);
-  return "it is not a tube, or points at the camera";
-}
-
-// Tries the first few seeds. Stores the result of the best seed in `best`.
+// Finds the arm by the method in the settings. If this is Otsu's and shows no arm, tries the other methods:
+// Otsu's classes depend on their areas, so that an uneven ground or a thin arm misleads it. Returns false if
+// the search stopped at a frame.
 template <typename Value>
-void ArmFinder::Work::try_seeds(const Image<Value>& picture, double scale, const Component& component) {
-  for (std::size_t i = 0; i < std::min(seeds.size(), most_seeds); ++i) {
-    if (!follow_from(picture, scale, component, seeds[i])) continue;
-    if (best.axis.empty() || merit(seen) > merit(best)) best = seen;
-    if (shows_all(seen)) break;
+bool ArmFinder::Work::try_methods(const Image<Value>& picture, const Image<std::uint8_t>& gray,
+                                  double scale) {
+  if (!run(picture, gray, scale, config.threshold)) return false;
+  if (search.seen.is_found() || config.threshold.method != ThresholdMethod::otsu) return true;
+  ArmObservation first = search.seen;
+  bool is_plain = !first.threshold.reason.empty();
+  std::string reasons;
+  for (const ThresholdMethod method : {ThresholdMethod::two_mode, ThresholdMethod::by_block}) {
+    ThresholdConfig other = config.threshold;
+    other.method = method;
+    search.stops_at_frame = false;
+    run(picture, gray, scale, other);
+    if (search.is_clear()) {
+      search.seen.notes.push_back(fmt::format("the threshold method {} shows the arm; otsu does not: {}",
+                                              name_of(method), first.reason));
+      return true;
+    }
+    is_plain = is_plain && !search.seen.threshold.reason.empty();
+    reasons += fmt::format("; {}: {}", name_of(method),
+                           search.seen.is_found() ? "shows a tube without clear ends" : search.seen.reason);
   }
+  if (!is_plain)
+    first.reason = fmt::format(
+        "no threshold shows an arm: otsu: {}{}. Try a fixed level, a region, a picture of the background, or "
+        "the arm's colour",
+        first.reason, reasons);
+  search.seen = std::move(first);
+  return true;
 }
 
-// Tracks the tube from a seed in both directions.
 template <typename Value>
-bool ArmFinder::Work::follow_from(const Image<Value>& picture, double scale, const Component& component,
-                                  const TubeSeed& rough) {
-  const double contrast = (seen.threshold.bright - seen.threshold.dark) * scale;
-  const TubeSeed place = shortest_chord(components, rough.center, 2 * rough.width + 4);
-  TubeTracker<Value> tracker(picture, seen.threshold.figure, seen.threshold.level * scale, contrast, steps);
-  const auto seed = tracker.seed(place.center, place.normal, 0.5 * place.width);
-  least_blur = std::min(least_blur, tracker.blur());
-  if (!seed) return false;
-  ahead.clear(), sections.clear();
-  const TrackEnd back = tracker.follow(*seed, -1, ahead);
-  sections.assign(ahead.rbegin(), ahead.rend());
-  sections.push_back(*seed);
-  TrackEnd front = TrackEnd::closed;
-  if (back != TrackEnd::closed) front = tracker.follow(*seed, 1, sections);
-  if (static_cast<double>(sections.size()) * tracker.step() < least_slenderness * 2 * seed->half_width)
-    return false;
-  seen.is_closed = front == TrackEnd::closed;
-  const TrackEnd behind = seen.is_closed ? TrackEnd::closed : back;
-  if (!curve.fit(tracker, {behind, front}, sections, seen)) return false;
-  if (2 * std::ranges::count_if(seen.axis, &AxisSample::is_seen) < std::ssize(seen.axis)) return false;
-  seen.blur = tracker.blur();
-  seen.noise = tracker.noise() / scale;
-  seen.contrast = tracker.contrast() / scale;
-  double explained = 0;
-  for (std::size_t i = 1; i < seen.axis.size(); ++i)
-    explained += seen.axis[i].width * (seen.axis[i].pixel - seen.axis[i - 1].pixel).norm();
-  for (const AxisEnd& end : seen.ends)
-    explained += 0.25 * std::numbers::pi * end.bulge * seen.axis.back().width;
-  seen.covered = explained / static_cast<double>(component.area);
-  return seen.covered >= least_covered;
-}
-
-void ArmFinder::Work::order_ends() {
-  auto& [base, tip] = seen.ends;
-  bool is_reversed = false;
-  if (config.base) {
-    is_reversed = (tip.pixel - *config.base).norm() < (base.pixel - *config.base).norm();
-  } else if ((base.kind == AxisEndKind::border) != (tip.kind == AxisEndKind::border)) {
-    is_reversed = tip.kind == AxisEndKind::border;
+const ArmObservation& ArmFinder::Work::find(const Image<Value>& picture, const Image<std::uint8_t>& gray,
+                                            double scale) {
+  begin();
+  if (try_methods(picture, gray, scale)) return end();
+  const PixelBox box = search.part;
+  search_from(box);
+  Image<Value>& part = cut_of(picture);
+  cut_out(picture, box, part);
+  if constexpr (std::is_same_v<Value, std::uint8_t>) {
+    try_methods(part, part, scale);
   } else {
-    is_reversed = tip.pixel.y() > base.pixel.y();
+    cut_out(gray, box, cut_bytes);
+    try_methods(part, cut_bytes, scale);
   }
-  if (is_reversed) {
-    std::swap(base, tip);
-    std::ranges::reverse(seen.axis);
-    for (AxisSample& sample : seen.axis) sample.normal = -sample.normal;
-  }
-  if (seen.is_closed) {
-    seen.notes.emplace_back("the tube is closed and has no ends");
-    return;
-  }
-  for (const AxisEnd& end : seen.ends) {
-    const char* name = &end == &base ? "base" : "tip";
-    if (end.kind == AxisEndKind::border)
-      seen.notes.push_back(fmt::format("the picture's border cuts the arm at its {}", name));
-    if (end.kind == AxisEndKind::lost)
-      seen.notes.push_back(
-          fmt::format("at ({:.1f}, {:.1f}) the arm's borders are no longer visible: the arm is beside "
-                      "another figure, or points at the camera",
-                      end.pixel.x(), end.pixel.y()));
-  }
+  search.seen.notes.push_back(fmt::format("the picture has a frame: searched columns {} to {}, rows {} to {}",
+                                          box.left, box.right - 1, box.top, box.bottom - 1));
+  return end();
 }
 
-void ArmFinder::Work::note_others() {
-  const auto measured = std::ranges::find_if(order, [&](std::uint32_t i) {
-    const Eigen::Vector2d middle = seen.axis[seen.axis.size() / 2].pixel;
-    const Run* run = components.run_at(static_cast<int>(std::lround(middle.x())),
-                                       static_cast<int>(std::lround(middle.y())));
-    return run != nullptr && run->component == i;
-  });
-  const double area = measured == order.end() ? 0 : static_cast<double>(components.list[*measured].area);
-  std::size_t others = 0;
-  for (const std::uint32_t i : order)
-    if ((measured == order.end() || i != *measured) &&
-        static_cast<double>(components.list[i].area) > 0.2 * area)
-      ++others;
-  if (others > 0)
-    seen.notes.push_back(fmt::format("{} other figure{} of similar size: the largest tube was measured",
-                                     others, others > 1 ? "s" : ""));
-  if (seen.covered < 0.8)
-    seen.notes.push_back(fmt::format(
-        "the tube covers {:.0f} % of the silhouette: something touches the tube, or the tube crosses itself",
-        100 * seen.covered));
+// Shifts the result from the searched part to the whole picture.
+const ArmObservation& ArmFinder::Work::end() {
+  ArmObservation& seen = search.seen;
+  if (search.origin.isZero()) return seen;
+  for (AxisSample& sample : seen.axis) sample.pixel += search.origin;
+  for (AxisEnd& end : seen.ends) end.pixel += search.origin;
+  for (BorderPoint& point : seen.unexplained) point.pixel += search.origin;
+  for (Eigen::Vector2d& place : seen.places) place += search.origin;
+  return seen;
 }
 
-// Adds enough places to test whether a shape covers the figure. Parts thinner than a third of the arm may
-// have none.
-void ArmFinder::Work::add_places() {
-  constexpr double about = 120;
-  double width = 0;
-  for (const AxisSample& sample : seen.axis) width += sample.width / static_cast<double>(seen.axis.size());
-  const auto area = static_cast<double>(components.list[followed].area);
-  const auto spacing = static_cast<int>(std::clamp(std::sqrt(area / about), 1.0, std::max(1.0, width / 3)));
-  strew(components, followed, spacing, seen.places);
-}
-
-// Uses the figure that was tracked, or the largest figure.
-void ArmFinder::Work::add_unexplained(const Image<std::uint8_t>& gray) {
-  if (order.empty() || (seen.is_found() && seen.covered >= all_but_ends)) return;
-  const std::uint32_t component = seen.is_found() ? followed : order.front();
-  constexpr double usual_blur = 0.8;  // px
-  find_border(gray, seen.threshold, components, component, seen.blur > 0 ? seen.blur : usual_blur,
-              seen.unexplained);
-  std::erase_if(seen.unexplained, [&](const BorderPoint& point) { return is_explained(point, seen.axis); });
+const ArmObservation& ArmFinder::Work::find_in_scene(const Image<std::uint8_t>& picture,
+                                                     const Image<std::uint16_t>* words, int white) {
+  begin();
+  const ScenePart part = part_in_scene(*config.scene, picture);
+  search_from(part.box);
+  search.inside = part.inside.values().empty() ? nullptr : &part.inside;
+  if (!part.reason.empty()) {
+    search.seen = {};
+    search.seen.reason = part.reason;
+    return end();
+  }
+  if (!part.has_matte) {
+    if (words == nullptr) {
+      try_methods(part.gray, part.filled, 1);
+    } else {
+      cut_out(*words, part.box, cut_words);
+      try_methods(cut_words, part.filled, scale_of(*words, white));
+    }
+    search.inside = nullptr;
+    return end();
+  }
+  ThresholdConfig threshold;
+  threshold.method = ThresholdMethod::fixed, threshold.level = 127.5, threshold.figure = Figure::bright;
+  search.run(part.matte, part.figures, part.matte_scale, threshold);
+  // The mask alone is less accurate, but always has clear borders.
+  if (!search.is_clear()) {
+    const ArmObservation by_matte = search.seen;
+    search.config.least_sigma = std::max(config.least_sigma, mask_sigma);
+    search.run(part.soft, part.figures, 1, threshold);
+    if (!search.seen.is_found() || (by_matte.is_found() && by_matte.covered >= search.seen.covered))
+      search.seen = by_matte;
+    else
+      search.seen.notes.emplace_back(
+          "the arm's borders are unclear in the picture: only the mask of the arm was measured");
+  }
+  search.inside = nullptr;
+  search.seen.noise *= part.contrast / 255, search.seen.contrast *= part.contrast / 255;
+  search.seen.notes.insert(search.seen.notes.end(), part.notes.begin(), part.notes.end());
+  return end();
 }
 
 const ArmObservation& ArmFinder::find(const Image<std::uint8_t>& gray) {
-  work_->segment(gray);
-  if (work_->seen.reason.empty()) work_->find_axis(gray, scale_of(gray, 255));
-  work_->add_unexplained(gray);
-  return work_->seen;
+  if (work_->config.scene) return work_->find_in_scene(gray, nullptr, 255);
+  return work_->find(gray, gray, scale_of(gray, 255));
 }
 
 const ArmObservation& ArmFinder::find(const Image<std::uint16_t>& gray, int white) {
   Work& work = *work_;
   work.bytes = eight_bits(gray, white);
-  work.segment(work.bytes);
-  if (work.seen.reason.empty()) work.find_axis(gray, scale_of(gray, white));
-  work.add_unexplained(work.bytes);
-  return work.seen;
+  if (work.config.scene) return work.find_in_scene(work.bytes, &gray, white);
+  return work.find(gray, work.bytes, scale_of(gray, white));
 }
 
 const ArmObservation& ArmFinder::find(const Picture& picture, int white) {
   const auto* words = std::get_if<Image<std::uint16_t>>(&picture);
+  if (work_->config.scene) {
+    const Image<std::uint8_t> bytes = eight_bits(picture, white);
+    if (words == nullptr) return work_->find_in_scene(bytes, nullptr, 255);
+    const Image<std::uint16_t> gray = gray_picture(*words);
+    return work_->find_in_scene(bytes, &gray, white);
+  }
   if (words != nullptr)
     return words->channels() == 1 ? find(*words, white) : find(gray_picture(*words), white);
   const auto& bytes = std::get<Image<std::uint8_t>>(picture);
@@ -361,10 +243,16 @@ const ArmObservation& ArmFinder::find(const Photograph& photograph) {
   const ArmFinderConfig asked = work_->config;
   if (photograph.is_mask) work_->config.least_sigma = std::max(asked.least_sigma, mask_sigma);
   const bool has_words = !photograph.words.values().empty();
-  const ArmObservation& seen = has_words ? find(gray_picture(photograph.words), photograph.white)
-                                         : find(gray_picture(photograph.bytes));
+  const ArmObservation* seen = nullptr;
+  if (asked.scene) {
+    const Image<std::uint16_t> words = has_words ? gray_picture(photograph.words) : Image<std::uint16_t>();
+    seen = &work_->find_in_scene(photograph.bytes, has_words ? &words : nullptr, photograph.white);
+  } else {
+    seen = has_words ? &find(gray_picture(photograph.words), photograph.white)
+                     : &find(gray_picture(photograph.bytes));
+  }
   work_->config = asked;
-  return seen;
+  return *seen;
 }
 
 }  // namespace flexura

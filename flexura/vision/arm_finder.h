@@ -15,16 +15,23 @@
 
 namespace flexura {
 
+struct ArmScene;
 struct Photograph;
 
 /// Settings of the search for an arm in pictures.
 struct ArmFinderConfig {
   ThresholdConfig threshold;  ///< Separation of foreground and background.
-  /// A pixel (u, v) near the arm's base, px. Default: if the picture's border cuts exactly one end of the
-  /// arm, this end, otherwise the lower end in the picture.
+  /// A pixel (u, v) near the arm's base, px. Among several figures the nearest is measured, and its end at
+  /// this pixel is the base. Default: the largest figure; if the picture's border cuts exactly one end of the
+  /// arm, the base is this end, otherwise the lower end in the picture.
   std::optional<Eigen::Vector2d> base;
   /// Lower bound on the standard deviations of samples, px.
   double least_sigma = 0;
+  /// Least and greatest expected width of the arm, px. Figures of another width are measured only if no other
+  /// is left.
+  std::optional<std::array<double, 2>> width = {};
+  /// What tells the arm from its surroundings besides brightness; null: nothing.
+  std::shared_ptr<const ArmScene> scene = {};
 };
 
 /// A sample of a centerline in a picture.
@@ -75,6 +82,8 @@ struct ArmObservation {
   /// Points of the silhouette's outer border that are not on the borders of the measured tube; only if
   /// `covered` is small. Without a centerline, it has all points of the outer border.
   std::vector<BorderPoint> unexplained;
+  /// Whether the arm contradicts the base or the width in the settings. A note says how.
+  bool contradicts = false;
   /// Sample points over the whole silhouette, px (strew() in runs.h); empty if no arm was found.
   std::vector<Eigen::Vector2d> places;
 
@@ -85,8 +94,10 @@ struct ArmObservation {
 };
 
 /// Finds the arm in pictures (docs/vision.md). The steps are a threshold, runs of pixels, connected
-/// components, and tracking of the tube's two borders with subpixel accuracy. After the first pictures, it
-/// allocates no more memory. The result depends only on the picture, not on earlier pictures.
+/// components, and tracking of the tube's two borders with subpixel accuracy. If the threshold of the method
+/// `otsu` shows no arm, the methods `two_mode` and `by_block` are tried. A frame around the picture is
+/// left out. After the first pictures, it allocates no more memory, except for these two cases and for a
+/// scene. The result depends only on the picture, not on earlier pictures.
 class ArmFinder {
  public:
   /// Makes a finder that uses `config` for every picture.

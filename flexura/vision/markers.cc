@@ -16,6 +16,7 @@
 #include "flexura/math/median.h"
 #include "flexura/math/small_cholesky.h"
 #include "flexura/vision/arm_skin.h"
+#include "flexura/vision/marker_texture.h"
 #include "flexura/vision/spots.h"
 
 namespace flexura {
@@ -289,7 +290,17 @@ MarkerObservations find_markers(const Image<std::uint8_t>& picture, const ArmObs
         fmt::format("the arm is {:.1f} px thick: markers are not searched below {} px", thickness, thinnest));
     return found;
   }
-  const double bound = std::max(least_difference, 5 * arm.noise);
+  double bound = std::max(least_difference, 5 * arm.noise);
+  if (const auto texture = texture_of(skin, thickness, bound)) {
+    // A marker must stand out from the texture even at half of the bound, where its parts are compared.
+    constexpr double stands_out = 2.5;
+    bound = std::max(bound, stands_out * texture->contrast);
+    found.notes.push_back(
+        fmt::format("the arm's surface has a texture ({} stretches, one every {:.1f} px): only what "
+                    "differs 2.5 times as much is a marker",
+                    texture->count, texture->period));
+    if (texture_of(skin, thickness, bound)) return found;
+  }
   const BandFinder finder(skin, bound, arm.noise);
   std::vector<Stretch> bands, others;
   for (const Stretch& stretch : stretches(skin.colors[middle_line], finder.own(), bound)) {

@@ -69,7 +69,7 @@ void add_runs(const std::uint8_t* pixels, int width, int v, const BrightBits& br
 }  // namespace
 
 void Components::find(const Image<std::uint8_t>& gray, const Threshold& threshold,
-                      const BlockThresholds* blocks) {
+                      const BlockThresholds* blocks, const Image<std::uint8_t>* inside) {
   runs.clear();
   row_start_.clear();
   const double least = std::clamp(std::ceil(threshold.level), 0.0, 256.0);
@@ -91,6 +91,7 @@ void Components::find(const Image<std::uint8_t>& gray, const Threshold& threshol
     add_runs(gray.row(v).data(), gray.width(), v, bright, threshold.figure == Figure::dark, runs);
   }
   row_start_.push_back(static_cast<std::uint32_t>(runs.size()));
+  if (inside != nullptr) keep_inside(*inside);
   join(gray.height());
   for (Run& run : runs) {
     Component& component = list[run.component];
@@ -98,6 +99,23 @@ void Components::find(const Image<std::uint8_t>& gray, const Threshold& threshol
     if (run.last == gray.width()) ++component.on_border;
     if (run.v == 0 || run.v == gray.height() - 1) component.on_border += run.last - run.first;
   }
+}
+
+void Components::keep_inside(const Image<std::uint8_t>& inside) {
+  std::vector<Run> all;
+  std::swap(all, runs);
+  row_start_.clear();
+  for (const Run& run : all) {
+    while (row_start_.size() <= static_cast<std::size_t>(run.v))
+      row_start_.push_back(static_cast<std::uint32_t>(runs.size()));
+    for (int u = run.first; u < run.last; ++u) {
+      if (inside.at(u, run.v) == 0) continue;
+      if (u == run.first || inside.at(u - 1, run.v) == 0) runs.push_back({run.v, u, u, 0});
+      runs.back().last = u + 1;
+    }
+  }
+  while (row_start_.size() <= static_cast<std::size_t>(inside.height()))
+    row_start_.push_back(static_cast<std::uint32_t>(runs.size()));
 }
 
 std::uint32_t Components::root(std::uint32_t label) {
@@ -162,7 +180,7 @@ void strew(const Components& components, std::uint32_t component, int spacing,
 }
 
 Threshold segment(const Image<std::uint8_t>& gray, const ThresholdConfig& config, Components& components,
-                  BlockThresholds& blocks, std::size_t samples) {
+                  BlockThresholds& blocks, std::size_t samples, const Image<std::uint8_t>* inside) {
   components.runs.clear(), components.list.clear();
   Threshold threshold = threshold_of(gray, config, samples);
   // A subset of pixels may miss a thin arm.
@@ -170,7 +188,7 @@ Threshold segment(const Image<std::uint8_t>& gray, const ThresholdConfig& config
   // In front of an uneven screen, the two classes may separate in blocks but not in the whole picture.
   const bool by_block = config.method == ThresholdMethod::by_block && blocks.make(gray, config);
   if (by_block) threshold = blocks.mean(gray);
-  if (threshold.reason.empty()) components.find(gray, threshold, by_block ? &blocks : nullptr);
+  if (threshold.reason.empty()) components.find(gray, threshold, by_block ? &blocks : nullptr, inside);
   return threshold;
 }
 

@@ -31,14 +31,15 @@ struct Components {
   std::vector<Component> list;  ///< Components, in the order of their first runs.
 
   /// Finds runs and components of the foreground pixels. The foreground is separated by `threshold` or, with
-  /// `blocks`, by local thresholds.
+  /// `blocks`, by local thresholds. Pixels at which `inside` is 0 are background.
   void find(const Image<std::uint8_t>& gray, const Threshold& threshold,
-            const BlockThresholds* blocks = nullptr);
+            const BlockThresholds* blocks = nullptr, const Image<std::uint8_t>* inside = nullptr);
 
   /// Returns the run that contains a pixel; null for a background pixel.
   [[nodiscard]] const Run* run_at(int u, int v) const;
 
  private:
+  void keep_inside(const Image<std::uint8_t>& inside);
   void join(int height);
   std::uint32_t root(std::uint32_t label);
 
@@ -55,9 +56,9 @@ void strew(const Components& components, std::uint32_t component, int spacing,
 
 /// Computes the threshold and the components of a picture. There are no components if the threshold separates
 /// no foreground. `samples` limits the number of pixels in the histogram. If no figure is found with them,
-/// all pixels are used.
+/// all pixels are used. Pixels at which `inside` is 0 belong to no component.
 [[nodiscard]] Threshold segment(const Image<std::uint8_t>& gray, const ThresholdConfig& config,
                                 Components& components, BlockThresholds& blocks,
-                                std::size_t samples = 1U << 30U);
+                                std::size_t samples = 1U << 30U, const Image<std::uint8_t>* inside = nullptr);
 
 }  // namespace flexura

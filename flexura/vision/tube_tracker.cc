@@ -82,6 +82,12 @@ bool TubeTracker<Value>::is_figure(const Vector2d& pixel) const {
   return edges_.holds(pixel) && edges_.sign() * (level_ - edges_.at(pixel)) > 0;
 }
 
+template <typename Value>
+bool TubeTracker<Value>::is_in_view(const Vector2d& pixel) const {
+  return edges_.holds(pixel) && (inside_ == nullptr || inside_->at(static_cast<int>(pixel.x() + 0.5),
+                                                                   static_cast<int>(pixel.y() + 0.5)) != 0);
+}
+
 // Finds the border near `from` along `outward`; `normal` is the border's normal. The search is repeated from
 // the found position until it converges.
 template <typename Value>
@@ -232,7 +238,7 @@ TrackEnd TubeTracker<Value>::follow(const CrossSection& seed, int way, std::vect
   const Gains gains(step_);
   while (!end && sections.size() - first < most_sections) {
     state.advance(step_);
-    if (!edges_.holds(state.position)) {
+    if (!is_in_view(state.position)) {
       end = TrackEnd::border;
       break;
     }

@@ -45,6 +45,10 @@ class TubeTracker {
   /// contrast of a border.
   TubeTracker(const Image<Value>& picture, Figure figure, double level, double contrast, BlurredSteps& steps);
 
+  /// Ends the tracking at pixels at which `inside` is 0, as at the picture's border. Null: nowhere. The image
+  /// must have the picture's size and outlive the tracker.
+  void stay_inside(const Image<std::uint8_t>* inside) { inside_ = inside; }
+
   /// Returns the cross-section near the pixel `center`. `normal`: approximate direction across the tube.
   /// Returns std::nullopt if the borders are not found.
   [[nodiscard]] std::optional<CrossSection> seed(const Eigen::Vector2d& center, const Eigen::Vector2d& normal,
@@ -88,9 +92,11 @@ class TubeTracker {
   void count(State& state, const CrossSection& section) const;
   [[nodiscard]] std::optional<TrackEnd> stop(const State& state) const;
   [[nodiscard]] bool is_figure(const Eigen::Vector2d& pixel) const;
+  [[nodiscard]] bool is_in_view(const Eigen::Vector2d& pixel) const;
   void guess_blur(const CrossSection& section);
 
   EdgeFinder<Value> edges_;
+  const Image<std::uint8_t>* inside_ = nullptr;
   double level_, contrast_, noise_, blur_ = 0.8, sigma_ = 2.5, step_ = 1;
 };
 

@@ -66,6 +66,7 @@ PictureObservation observe(const PictureFile& picture, const MeasuredCamera& cam
   ArmFinderConfig finding;
   finding.threshold = config.threshold;
   if (prior.is_base_position_known) finding.base = view.project(prior.arm.X_WB.position);
+  finding.cuts_at_base = true;
   finding.width = expected_width(prior, view, view.lens.intrinsics().fx);
   if (index < config.scenes.size()) finding.scene = config.scenes[index];
   ArmFinder finder(finding);

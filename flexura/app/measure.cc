@@ -41,6 +41,7 @@ MeasureConfig config_of(const MeasureArguments& arguments) {
     if (!is_place(arguments.base[0]) || !is_place(arguments.base[1]))
       throw input_error("--base", fmt::format("expected two numbers u,v within {:g} px", most));
     config.finder.base = Eigen::Vector2d(arguments.base[0], arguments.base[1]);
+    config.finder.cuts_at_base = true;
   }
   constexpr double thinnest = 1e-6, thickest = 1e3;
   const auto is_size = [](double x) { return x >= thinnest && x <= thickest; };

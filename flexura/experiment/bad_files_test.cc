@@ -199,7 +199,7 @@ TEST(BadFiles, ATrapezoidFromWhereAFormulaIsNowhereTakesTooLong) {
                             "[[task]]\nkind = 'expression'\nduration = 1\narchings = '1.1e308*t'\n"
                             "[[task]]\nkind = 'move'\nlaw = 'trapezoid'\nmax_rate = 1\n"
                             "max_acceleration = 2\nto.archings = [0.1]\n"),
-              HasSubstr("steps of"));
+              HasSubstr("clock.step: makes"));
 }
 
 TEST(BadFiles, KeysWrittenTwiceAreToldWithTheRest) {

@@ -425,7 +425,7 @@ TEST_F(RecordingSessionTest, RefusesWhatIsNoRecording) {
   std::ofstream(folder_.path() / experiment_file_name) << viewed_text;
   EXPECT_THAT(error(), HasSubstr("has no log.mcap"));
   std::ofstream(folder_.path() / log_file_name) << "";
-  EXPECT_THAT(error(), HasSubstr("has no state"));
+  EXPECT_THAT(error(), HasSubstr("has no messages"));
   std::ofstream(folder_.path() / log_file_name) << "this is no log at all, is it";
   EXPECT_NE(error(), "no error");
 }

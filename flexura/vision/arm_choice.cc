@@ -73,7 +73,7 @@ void ArmSearch::order_figures() {
 
 // Returns whether the measured tube begins near the base, if that is given and in the picture.
 bool ArmSearch::ends_at_base() {
-  if (!config.base || seen.is_closed || !is_base_visible()) return true;
+  if (!config.base || !config.cuts_at_base || seen.is_closed || !is_base_visible()) return true;
   if (seen.contradicts) return false;
   const double grace = std::max(20.0, median_width(seen.axis, widths_));
   return !cut_.empty() || (seen.ends[0].pixel - *config.base).norm() <= grace ||

@@ -184,6 +184,7 @@ TEST(ArmHints, BeginTheArmAtItsBase) {
   const auto post = DrawnScene(640, 480).ground(plain(230)).bar(300, 60, 320, 480, 40).photograph(1, 1);
   ArmFinderConfig config;
   config.base = Eigen::Vector2d(310, 350);
+  config.cuts_at_base = true;
   const ArmObservation on_post = ArmFinder(config).find(post);
   expect_bar(on_post, 309.5, 59.5, 350);
   EXPECT_THAT(on_post.notes, Contains(HasSubstr("px beyond the given base")));

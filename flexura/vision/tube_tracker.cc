@@ -84,8 +84,9 @@ bool TubeTracker<Value>::is_figure(const Vector2d& pixel) const {
 
 template <typename Value>
 bool TubeTracker<Value>::is_in_view(const Vector2d& pixel) const {
-  return edges_.holds(pixel) && (inside_ == nullptr || inside_->at(static_cast<int>(pixel.x() + 0.5),
-                                                                   static_cast<int>(pixel.y() + 0.5)) != 0);
+  return edges_.holds(pixel) &&
+         (inside_ == nullptr || inside_->at(static_cast<int>(std::lround(pixel.x())),
+                                            static_cast<int>(std::lround(pixel.y()))) != 0);
 }
 
 // Finds the border near `from` along `outward`; `normal` is the border's normal. The search is repeated from

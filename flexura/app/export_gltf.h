@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "flexura/base/progress.h"
 

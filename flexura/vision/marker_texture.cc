@@ -17,7 +17,7 @@ std::optional<SkinTexture> texture_on(const std::vector<Eigen::Vector3d>& colors
                                       double bound) {
   constexpr std::size_t least_count = 6;
   // Markers are farther apart than this share of the arm's width.
-  constexpr double short_period = 0.75;
+  constexpr double short_period = 0.6;
   const Eigen::Vector3d own = median_color(colors);
   const std::vector<Stretch> found = stretches(colors, own, bound);
   if (found.size() < least_count) return std::nullopt;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -77,6 +78,33 @@ TEST_F(DynamicArm, GraspsAPostAndHoldsOnToIt) {
   EXPECT_LT(left, -0.05);
   EXPECT_GT(up, 0.05);
   EXPECT_THAT(read_text_file(result.folder / "report.html", 1 << 26), HasSubstr("contact forces"));
+}
+
+// A move of 0.15 s against a post of 2 mm radius, thinner than the way of the arm in a step of 20 or 50 ms.
+TEST_F(DynamicArm, IsHeldByAThinPostWhateverTheStep) {
+  std::vector<Eigen::Vector3d> tips;
+  for (const double step : {0.005, 0.02, 0.05}) {
+    std::string text = fmt::format(
+        "[arm]\nkind = 'spatial'\nmodel = 'dynamic'\ngravity = [0, 0, 0]\ntime_step = {}\n"
+        "[[arm.section]]\nlength = 0.5\nradius = 0.015\nmax_bend_deg = 150\nmax_bend_rate_deg = 2000\n"
+        "material = {{ youngs_modulus = 3e7, density = 1000, damping_time = 0.01 }}\n"
+        "[arm.contact]\nstiffness = 1e6\nfriction = 0\n"
+        "[[obstacle]]\nkind = 'capsule'\nname = 'post'\nfrom = [0.14, 0.32, -0.3]\nto = [0.14, 0.32, 0.3]\n"
+        "radius = 0.002\nmay_touch = true\n"
+        "[[task]]\nkind = 'move'\nduration = 0.15\nto.bends_deg = [[120, 0]]\n"
+        "[[task]]\nkind = 'hold'\nduration = 1\n",
+        step);
+    for (const int angle : {0, 120, 240})
+      text += fmt::format("[[arm.tendon]]\nsection = 1\nradius_mm = 10\nangle_deg = {}\n", angle);
+    const auto file = folder_.path() / "post.toml";
+    std::ofstream(file) << text;
+    const RunResult result = run(load_experiment(file, {{"record.report=false"}, {}}));
+    ASSERT_EQ(result.outcome, RunOutcome::done);
+    const auto tip = logged<PosesMessage>(result, arm_truth_topic).back().poses.back().position;
+    tips.emplace_back(tip.x, tip.y, tip.z);
+    EXPECT_FALSE(logged<ContactsMessage>(result, arm_contacts_topic).back().contacts.empty());
+  }
+  for (const Eigen::Vector3d& tip : tips) EXPECT_LT((tip - tips.front()).norm(), 1e-3);
 }
 
 TEST_F(DynamicArm, GivesTheSameBytesAgain) {

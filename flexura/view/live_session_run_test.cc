@@ -77,6 +77,9 @@ class RunningSessionTest : public LiveSessionTest {
     background_.is_prompt = false;
     ASSERT_EQ(ask(RunRequest{.task = {}, .speed = speed}).error, "");
     runner_ = std::thread([this] { background_.work(); });
+    // A slow machine needs a while until the arm moves.
+    pass_run(1.0 / 60);
+    for (int i = 0; i < 20000 && !(messenger_.state(me).arm.bends[0].norm() > 0); ++i) pass_run(1.0 / 60);
   }
   // Goes on, as fast as the run can follow, until the run's motion is over or the test's patience is.
   void pass_run(double seconds) {

@@ -73,7 +73,7 @@ void ArmSearch::order_figures() {
 
 // Returns whether the measured tube begins near the base, if that is given and in the picture.
 bool ArmSearch::ends_at_base() {
-  if (!config.base || !config.cuts_at_base || seen.is_closed || !is_base_visible()) return true;
+  if (!config.base || seen.is_closed || !is_base_visible()) return true;
   if (seen.contradicts) return false;
   const double grace = std::max(20.0, median_width(seen.axis, widths_));
   return !cut_.empty() || (seen.ends[0].pixel - *config.base).norm() <= grace ||
@@ -133,7 +133,7 @@ void ArmSearch::reverse() {
 // part with a free end or, if both parts or none have one, the longer part.
 void ArmSearch::begin_at_base() {
   cut_.clear();
-  if (!config.base || seen.is_closed || seen.contradicts) return;
+  if (!config.base || !config.cuts_at_base || seen.is_closed || seen.contradicts) return;
   const double width = median_width(seen.axis, widths_);
   std::size_t at = nearest_sample(seen.axis, *config.base);
   const double aside = (seen.axis[at].pixel - *config.base).norm();

@@ -96,7 +96,7 @@ test('a restart brings another token, which is said plainly, and a pasted addres
   expect(await page.locator('[role="alertdialog"]').textContent()).toContain('token');
   await page.locator('#token').fill('http://nonsense');
   await page.getByRole('button', { name: 'Connect' }).click();
-  expect(await page.locator('[role="alertdialog"]').textContent()).toContain('no token in this');
+  expect(await page.locator('[role="alertdialog"]').textContent()).toContain('No valid token');
   await page.locator('#token').fill(server.url);
   await page.getByRole('button', { name: 'Connect' }).click();
   await until(async () => (await badge()) === 'live');

@@ -283,7 +283,7 @@ describe.skipIf(!program)('a run that is watched', () => {
     await until(async () => (await server_state(page)).time > time);
     const cancel = page.getByRole('button', { name: 'Cancel' });
     expect(await cancel.isDisabled()).toBe(true);
-    expect(await cancel.getAttribute('title')).toContain('belongs to the terminal');
+    expect(await cancel.getAttribute('title')).toContain('Only the terminal that started');
     await page.keyboard.press('c');
     await page.waitForSelector('.badge[data-kind="recording"]', { timeout: 240_000 });
     // The run reached its end and was not stopped early.

@@ -21,7 +21,7 @@ namespace flexura {
 struct EstimateConfig {
   ShapePrior prior;  ///< Prior knowledge about the arm.
   ThresholdConfig threshold;
-  /// What tells the arm from its surroundings in each picture; empty or null: brightness alone.
+  /// What separates the arm from its surroundings in each picture; empty or null: brightness alone.
   std::vector<std::shared_ptr<const ArmScene>> scenes;
   EstimatorConfig estimator;
   std::size_t points = 101;  ///< Number of backbone points in the answer; at least 2.

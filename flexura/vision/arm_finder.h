@@ -25,15 +25,15 @@ struct ArmFinderConfig {
   /// this pixel is the base. Default: the largest figure; if the picture's border cuts exactly one end of the
   /// arm, the base is this end, otherwise the lower end in the picture.
   std::optional<Eigen::Vector2d> base;
-  /// Whether a tube that continues beyond the base, such as a post of the arm's width, is cut at the base. Use
-  /// it only if the base is known to a few pixels.
+  /// Whether a tube that continues beyond the base, such as a post of the arm's width, is cut at the base.
+  /// Use it only if the base is known to a few pixels.
   bool cuts_at_base = false;
   /// Lower bound on the standard deviations of samples, px.
   double least_sigma = 0;
   /// Least and greatest expected width of the arm, px. Figures of another width are measured only if no other
   /// is left.
   std::optional<std::array<double, 2>> width = {};
-  /// What tells the arm from its surroundings besides brightness; null: nothing.
+  /// What separates the arm from its surroundings besides brightness; null: nothing.
   std::shared_ptr<const ArmScene> scene = {};
 };
 

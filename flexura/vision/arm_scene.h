@@ -11,7 +11,7 @@
 
 namespace flexura {
 
-/// What tells the arm from its surroundings in one camera's pictures (docs/vision.md, "Arms in front of
+/// What separates the arm from its surroundings in one camera's pictures (docs/vision.md, "Arms in front of
 /// anything"). A pixel belongs to the arm only if everything that is given agrees.
 struct ArmScene {
   /// Corners of the polygon in which the arm is searched, px; empty: the whole picture.

@@ -185,7 +185,8 @@ SentText onvif_sent(std::string_view bytes) {
   if (request->name.starts_with("Get")) return {request->name + "?", true};
   std::string text = request->name;
   const auto add = [&text](const char* name, const std::optional<double>& value) {
-    if (value) text += fmt::format("{} {} {:.6g}", text.find(' ') == std::string::npos ? "" : ",", name, *value);
+    if (value)
+      text += fmt::format("{} {} {:.6g}", text.find(' ') == std::string::npos ? "" : ",", name, *value);
   };
   add("pan", request->pan), add("tilt", request->tilt), add("zoom", request->zoom);
   add("speed", request->speed);

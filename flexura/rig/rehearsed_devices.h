@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "flexura/camera/camera.h"
 #include "flexura/base/descriptor.h"
+#include "flexura/camera/camera.h"
 #include "flexura/equipment/device_server.h"
 #include "flexura/equipment/grbl_device.h"
 #include "flexura/equipment/link.h"

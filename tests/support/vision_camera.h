@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "flexura/equipment/aravis_camera.h"
 #include "flexura/base/descriptor.h"
+#include "flexura/equipment/aravis_camera.h"
 #include "tests/support/numbered_frames.h"
 #include "tests/support/spawned.h"
 

@@ -91,6 +91,7 @@ class Loop {
     observed_.estimate = observed_.estimate.is_found ? estimator_.follow(observed_.seen, {arm_, expected_})
                                                      : estimator_.estimate(observed_.seen);
     if (!observed_.estimate.is_found) throw std::runtime_error(observed_.estimate.reason);
+    observed_.rest = observed_.estimate.shape.state;  // The arm does not swing.
     fitting_ += watch.lap();
     const ServoLaw::Output output = law_->step({.observed = observed_,
                                                 .is_fresh = true,

@@ -2,6 +2,7 @@
 // from the picture before.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include "flexura/estimate/shape_tracker.h"
 #include "flexura/vision/arm_finder.h"
 #include "tests/support/seen_arms.h"
+#include "tests/support/shape_error.h"
 
 namespace flexura {
 namespace {
@@ -83,6 +85,24 @@ void fit_cold(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(fit_cold)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+
+// The same arm, described by many equal sections.
+void fit_sections(benchmark::State& state) {
+  Arm arm = film().arm;
+  const double length = arm.length() / static_cast<double>(state.range(0));
+  arm.sections.assign(static_cast<std::size_t>(state.range(0)), {.length = length, .radius = {0.018, 0.018}});
+  ShapeEstimator fit(described_arm(arm));
+  std::size_t i = 0;
+  double worst = 0;
+  for (auto _ : state) {
+    const std::size_t frame = i++ % film().observations.size();
+    const ShapeEstimate found = fit.estimate(film().observations[frame]);
+    require(found);
+    worst = std::max(worst, shape_error(found.shape, Backbone(film().arm, film().states[frame])));
+  }
+  state.counters["worst_mm"] = 1000 * worst;
+}
+BENCHMARK(fit_sections)->Arg(3)->Arg(9)->Arg(15)->Arg(30)->Arg(60)->Arg(99)->Unit(benchmark::kMillisecond);
 
 void fit_following(benchmark::State& state) {
   ShapeEstimator fit = estimator(state.range(0));

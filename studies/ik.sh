@@ -1,31 +1,35 @@
 #!/usr/bin/env bash
-# inverse kinematics of random targets in and out of reach: ./dev study ik [TARGETS] [UNREACHABLE] [SEED]
+# inverse kinematics of random targets in and out of reach: ./dev study ik [SAMPLES]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-targets=${1:-100000}
-unreachable=${2:-10000}
-seed=${3:-1}
+samples=${1:-} # For each row of the tables; default: as in the campaign files.
 page=docs/studies/ik.md
 build=${FLEXURA_STUDY_BUILD:-build/release}
 
-if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
-cmake --build "$build" --target ik_study
+if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then
+  cmake --preset release
+  cmake --build "$build" --target flexura
+fi
 mkdir -p docs/studies build/studies
 {
-  echo "# Inverse kinematics"
-  echo
-  echo "The study solves inverse kinematics for random arms of three spatial sections of 0.15 to 0.4 m. Each arm has one bend limit between 60 and 180 degrees. Targets are tip poses of random states, whose bends are uniformly distributed over their disks. The solver has no initial shape, the default tolerances (1e-9 of the length; 1e-9 rad), and the default starting states."
-  echo
-  echo "- *Wrong*: by forward kinematics, the error of the answer is over twice the tolerance."
-  echo "- Unreachable targets are constructed without the tested code ([method](../../tests/support/inverse_targets.h))."
-  echo "- *Beaten*: a derivative-free search finds a state whose distance from the target is smaller than that of the answer by over 1e-6 of the distance. For targets with a direction, the distance combines the position error divided by the length and the angle error. The limit is then 1e-4 instead of 1e-6, because the solver stops early in long, narrow valleys of the error. The search uses 1,000 random poses, and random descents of 400 steps from the answer and the five best poses."
-  echo "- The study fails if an answer is beaten or wrong, or if under 99.9 % of the reachable targets are solved (for bends up to 360 degrees: 99 %)."
-  echo
+  cat <<'END'
+# Inverse kinematics
+
+Each run of this study is an experiment: a `move` task of a random arm ([inverse kinematics](../inverse-kinematics.md)). The target is the tip that the arm has in a random shape. Each table is a [campaign](../campaigns.md) of `examples/22_ik_study`. The solver has the default tolerances (1e-9 of the length; 1e-9 rad).
+
+- *Position error* and *angle error* are the differences between the target and the tip that forward kinematics computes for the answer. The bounds are twice the tolerances of the longest arm. The columns "within the bounds" count only runs that are done.
+- *Wrongly refused*: the solver states that a reachable target is out of reach. *Starting states*: number of states from which the solver started.
+- A run is *done* if the motion to the answer is within all limits and reaches the target within 1e-6 of the length.
+
+END
   echo '```console'
-  echo "\$ ./dev study ik $targets $unreachable $seed"
+  echo "\$ ./dev study ik${samples:+ $samples}"
   echo '```'
   echo
-  "$build/bin/ik_study" "$targets" "$unreachable" "$seed"
+  FLEXURA_STUDY_BUILD=$build tools/study_page.sh 22_ik_study "$samples" reachable half_turn full_turn unreachable
+  cat <<'END'
+Tests compare the answers for unreachable targets with those of a search without derivatives (`flexura/kinematics/inverse_test.cc`).
+END
 } >build/studies/ik.md
 mv build/studies/ik.md "$page"
 echo "wrote $page"

@@ -46,7 +46,7 @@ wait $!
   echo "- *Trusted* estimates have no note ([estimation](../estimation.md)), and *noted* estimates have at least one. In all other cases no shape was found."
   echo "- *Error / sigma* is the error of trusted estimates divided by its standard deviation. The columns *in 50 % region* and *in 95 % region* are the percentages of true bends inside these confidence regions of the estimate."
   echo "- Quantiles are nearest ranks. The second table compares the results with the aims."
-  echo "- Two chi^2 tests check the covariance. A correct covariance exceeds their bounds once in a thousand studies. One test is for the mean squared error divided by its expectation. The other tests whether confidence regions in steps of 10 % contain equally many true bends. The last table has the results of both tests for different noise, for known arms."
+  echo "- Two chi^2 tests check the covariance. With a correct covariance, a test statistic exceeds its bound once in a thousand studies. One test is for the mean squared error divided by its expectation. The other tests whether confidence regions in steps of 10 % contain equally many true bends. The last table has the results of both tests for different noise, for known arms."
   echo
   echo "For comparison, a neural network estimates the shape from one real picture with a mean error of 0.36 % of the length, at 70 Hz. The network was trained for one robot with two segments (Shentu et al., MoSS, 2023)."
   echo

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Checks that the examples in the documents work, and that their links have targets.
 
-usage: check_docs.py [--root ROOT] [--bin BIN --prefix PREFIX]
+usage: check_docs.py [--root ROOT] [--bin BIN --prefix PREFIX [--python PYTHON]]
 
 BIN is the folder of the built programs, PREFIX an installed Flexura; without them only links and the form of the
-blocks are checked. Each document gets its own scratch folder with a copy of examples/. Its fenced blocks are processed
+blocks are checked. PYTHON is an interpreter that can import flexura. Each document gets its own scratch folder with a copy of examples/. Its fenced blocks are processed
 in order:
   console    Each line "$ COMMAND" is run there with BIN in PATH (a trailing \\ continues it). The lines after it, if
              any, are its expected output: "..." matches any text, a line "..." any lines. It has to succeed, or to
@@ -12,6 +12,8 @@ in order:
              exist. With --view no browser is opened, and SIGTERM ends the viewer once the results exist.
   cmake      The build of the programs after it: one program, made from main.cc.
   cpp        A whole program, compiled against PREFIX and run. Its comments "// prints: ..." give the expected output.
+  python     A whole program, run by PYTHON, unless a first line says otherwise (below). Its comments "# prints: ..."
+             give the expected output. Without PYTHON it is not run.
   any other  Only these two checks, which apply to every language:
              A first line with "file: NAME" writes the block to NAME in the scratch folder.
              A first line with "from: PATH" requires that PATH contains the rest, word for word.
@@ -149,8 +151,8 @@ class Sources:
 class Runner:
     """Runs one document's blocks in a scratch folder."""
 
-    def __init__(self, root, scratch, programs, prefix):
-        self.root, self.scratch, self.prefix, self.program = root, scratch, prefix, PROGRAM
+    def __init__(self, root, scratch, programs, prefix, python=None):
+        self.root, self.scratch, self.prefix, self.program, self.python = root, scratch, prefix, PROGRAM, python
         self.environment = {
             **os.environ,
             "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}",
@@ -200,6 +202,8 @@ class Runner:
             self.program = "\n".join(block.lines) + "\n"
         elif block.language == "cpp":
             yield from self.run_program(block)
+        elif block.language == "python" and self.python:
+            yield from self.run_python(block)
         elif block.language in ("sh", "bash", "shell"):
             yield block.line, "a block of commands is a console block"
 
@@ -228,6 +232,13 @@ class Runner:
             yield number, f"exit status {status}: {command}\n{output}"
         elif expected and not matches(expected, output):
             yield number, f"this is printed instead: {command}\n{output}"
+
+    def run_python(self, block):
+        text = "\n".join(block.lines) + "\n"
+        status, output = self.call([self.python, "-c", text])
+        expected = re.findall(r"# prints: (.*)", text)
+        if status != 0 or (expected and not matches(expected, output)):
+            yield block.line, f"this is printed instead (exit status {status})\n{output}"
 
     def run_program(self, block):
         text = "\n".join(block.lines) + "\n"
@@ -271,7 +282,7 @@ def documents(root):
     return sorted([*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("examples/**/*.md")])
 
 
-def problems(root, programs, prefix):
+def problems(root, programs, prefix, python=None):
     """Yields the problems of the documents at `root`, one text each."""
     yield from version_problems(root)
     sources = Sources(root)
@@ -281,7 +292,7 @@ def problems(root, programs, prefix):
             found.extend(sources.unknown_names(document))
         if programs:
             with tempfile.TemporaryDirectory() as scratch:
-                runner = Runner(root, Path(scratch), programs, prefix)
+                runner = Runner(root, Path(scratch), programs, prefix, python)
                 for block in split(document.read_text())[0]:
                     found.extend(runner.run(block))
         for line, text in found:
@@ -293,11 +304,12 @@ def main():
     parser.add_argument("--root", type=Path, default=Path(__file__).parent.parent)
     parser.add_argument("--bin", type=Path)
     parser.add_argument("--prefix", type=Path)
+    parser.add_argument("--python", type=Path)
     arguments = parser.parse_args()
     root = arguments.root.resolve()
     programs = arguments.bin and arguments.bin.resolve()
     count = 0
-    for problem in problems(root, programs, arguments.prefix and arguments.prefix.resolve()):
+    for problem in problems(root, programs, arguments.prefix and arguments.prefix.resolve(), arguments.python):
         print(problem, flush=True)
         count += 1
     print(f"{len(documents(root))} documents, {count} problems")

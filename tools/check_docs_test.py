@@ -1,5 +1,6 @@
 """Tests of check_docs.py on made-up documents."""
 
+import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -87,6 +88,17 @@ class CheckDocs(unittest.TestCase):
         self.assertIn("this does not compile", self.problems(build.format("no_command()\n", "yes") + program)[0])
         misspelt = program.replace("puts", "put")
         self.assertIn("this does not compile", self.problems(build.format("", "yes") + misspelt)[0])
+
+    def test_a_python_program_has_to_print_what_it_says(self):
+        def found(text):
+            (self.root / "README.md").write_text(f"```python\n{text}\n```\n")
+            return list(check_docs.problems(self.root, self.root, self.root, sys.executable))
+
+        self.assertEqual(found("print(1 + 1)  # prints: 2"), [])
+        self.assertEqual(found("print(open('examples/arm.toml').read())"), [])
+        self.assertIn("this is printed instead (exit status 0)\n2", found("print(1 + 1)  # prints: 3")[0])
+        self.assertIn("exit status 1", found("raise ValueError")[0])
+        self.assertEqual(self.problems("```python\nraise ValueError\n```\n"), [])
 
     def test_versions_agree(self):
         (self.root / "CMakeLists.txt").write_text("project(flexura VERSION 1.2.3 LANGUAGES CXX)\n")

@@ -91,8 +91,18 @@ void add_run(CLI::App& app, Command& chosen) {
       app, "run", command_group::experiments, "Run an experiment and write its results into a new folder",
       "flexura run experiment.toml\n"
       "flexura run experiment.toml --set arm.section.0.length=0.25 --seed 7 --out trial\n"
-      "flexura run laboratory.toml --dry-run");
+      "flexura run laboratory.toml --dry-run\n"
+      "flexura run --from results/campaign.db --row 17");
   add_experiment_argument(*run, arguments->experiment);
+  run->get_option("EXPERIMENT")->required(false);
+  CLI::Option* from =
+      run->add_option("--from", arguments->from, "Replay a run of `flexura campaign` with these results")
+          ->type_name("FILE")
+          ->excludes(run->get_option("EXPERIMENT"));
+  from->needs(run->add_option("--row", arguments->row, "Number of the replayed run")
+                  ->type_name("N")
+                  ->check(CLI::Range(std::int64_t{0}, std::int64_t{1000000000}).description(""))
+                  ->needs(from));
   run->add_option("--out", arguments->out, "New folder for the results (default: results/NAME)")
       ->type_name("DIR");
   add_set_option(*run, arguments->sets);
@@ -117,7 +127,9 @@ void add_run(CLI::App& app, Command& chosen) {
     run->get_option(option)->needs(view);
   dry->excludes(view);
   dry->excludes(run->get_option("--out"));
+  from->excludes(dry)->excludes(run->get_option("--seed"));
   run->callback([&chosen, arguments, viewer, is_viewed] {
+    if (arguments->experiment.empty() && arguments->from.empty()) throw CLI::RequiredError("EXPERIMENT");
     if (*is_viewed) arguments->viewer = *viewer;
     chosen = [arguments] {
       return arguments->dry_run ? dry_run_command(*arguments, std::cout, std::cerr)
@@ -173,7 +185,7 @@ void add_jog(CLI::App& app, Command& chosen) {
       ->type_name("")
       ->required();
   jog->add_flag("--here", arguments->here,
-                "Do no homing, because the arm has its initial shape now (default: rig.start decides)");
+                "Skip homing: the arm already has its initial shape (default: rig.start decides)");
   add_set_option(*jog, arguments->sets);
   jog->add_flag("--json", arguments->json, "Print one JSON document");
   jog->callback([&chosen, arguments] {
@@ -258,8 +270,9 @@ void add_identify(CLI::App& app, Command& chosen) {
                    "End of the part of the motion to use, s (default: the motion's end)")
       ->type_name("T");
   identify
-      ->add_option("--noise-mm", arguments->noise_mm,
-                   "Standard deviation of measured coordinates, mm; a log's points get this noise added")
+      ->add_option(
+          "--noise-mm", arguments->noise_mm,
+          "Standard deviation of measured coordinates, mm; if the motion is a log, such noise is added")
       ->type_name("N");
   identify->add_option("--window", arguments->window, "Duration of the motion in each equation, s")
       ->type_name("S");
@@ -279,21 +292,25 @@ void add_identify(CLI::App& app, Command& chosen) {
 
 void add_export(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command =
-      add_command(app, "export", command_group::experiments, "Write a run's log in another format",
-                  "flexura export results/experiment --to csv\n"
-                  "flexura export results/experiment --to gltf --out arm.glb");
-  command->add_option("RESULTS", arguments->results, "A folder made by `flexura run`")
+  CLI::App* command = add_command(app, "export", command_group::experiments,
+                                  "Write a run's log or a campaign's table in another format",
+                                  "flexura export results/experiment --to csv\n"
+                                  "flexura export results/experiment --to gltf --out arm.glb");
+  command
+      ->add_option("RESULTS", arguments->results,
+                   "A folder made by `flexura run`, or a file of `flexura campaign` (csv, markdown)")
       ->type_name("")
       ->required();
   command
       ->add_option("--to", arguments->format,
                    "csv: tables; mp4, png: a film of each recorded camera (as animated PNG with png);\n"
-                   "gltf: the arm's motion in three dimensions")
-      ->type_name("csv|mp4|png|gltf")
-      ->check(CLI::IsMember({"csv", "mp4", "png", "gltf"}).description(""))
+                   "gltf: the arm's motion in three dimensions; markdown: statistics of a campaign by groups")
+      ->type_name("csv|mp4|png|gltf|markdown")
+      ->check(CLI::IsMember({"csv", "mp4", "png", "gltf", "markdown"}).description(""))
       ->required();
-  command->add_option("-o,--out", arguments->out, "New file for gltf (default: RESULTS/gltf/arm.glb)")
+  command
+      ->add_option("-o,--out", arguments->out,
+                   "New file for gltf (default: RESULTS/gltf/arm.glb) or a campaign's table")
       ->type_name("FILE");
   command->callback([&chosen, arguments] {
     chosen = [arguments] { return export_command(*arguments, std::cout, std::cerr); };
@@ -319,13 +336,19 @@ void add_compare(CLI::App& app, Command& chosen) {
 
 void add_schema(CLI::App& app, Command& chosen) {
   auto format = std::make_shared<std::string>("json");
+  auto subject = std::make_shared<std::string>("experiment");
   CLI::App* command = add_command(app, "schema", command_group::program,
                                   "Print the JSON Schema of experiment files, for editors",
                                   "flexura schema > experiment.schema.json");
   command->add_option("--format", *format, "json, or markdown for a reference page (default: json)")
       ->type_name("json|markdown")
       ->check(CLI::IsMember({"json", "markdown"}).description(""));
-  command->callback([&chosen, format] { chosen = [format] { return schema_command(*format, std::cout); }; });
+  command->add_option("--of", *subject, "Kind of file (default: experiment)")
+      ->type_name("experiment|campaign")
+      ->check(CLI::IsMember({"experiment", "campaign"}).description(""));
+  command->callback([&chosen, format, subject] {
+    chosen = [format, subject] { return schema_command(*format, *subject, std::cout); };
+  });
 }
 
 // Adds the commands that print completion scripts and the manual page.
@@ -401,6 +424,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_check(app, chosen);
   add_run(app, chosen);
   add_rehearse(app, chosen);
+  add_campaign_commands(app, chosen);
   add_compare(app, chosen);
   add_export(app, chosen);
   add_devices(app, chosen);

@@ -12,7 +12,8 @@ namespace {
 // Returns the kind of a value, from its placeholder in the help.
 Takes taken(const std::string& value) {
   if (value.find('|') != std::string::npos) return Takes::choice;
-  if (value == "EXPERIMENT" || value == "ARM" || value == "WHAT") return Takes::experiment;
+  if (value == "EXPERIMENT" || value == "ARM" || value == "WHAT" || value == "CAMPAIGN")
+    return Takes::experiment;
   if (value == "FILE" || value == "IMAGE") return Takes::file;
   if (value == "DIR" || value == "RESULTS" || value == "MOTION") return Takes::folder;
   return Takes::text;

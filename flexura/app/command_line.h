@@ -29,7 +29,10 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const char* group,
 /// Adds `--set PATH=VALUE`, which changes a value of the experiment file.
 void add_set_option(CLI::App& command, std::vector<std::string>& sets);
 
-/// Adds the commands render, measure, estimate and intrinsics.
+/// Adds the commands campaign and report.
+void add_campaign_commands(CLI::App& app, Command& chosen);
+
+/// Adds the commands render, measure, estimate, intrinsics and board.
 void add_picture_commands(CLI::App& app, Command& chosen);
 
 /// Returns the description of the command line for the shells' completion and the manual page.

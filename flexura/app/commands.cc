@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "flexura/app/campaign.h"
 #include "flexura/app/export_gltf.h"
 #include "flexura/app/forward.h"
 #include "flexura/app/inverse.h"
@@ -26,6 +27,7 @@
 #include "flexura/app/words.h"
 #include "flexura/base/table.h"
 #include "flexura/base/work_progress.h"
+#include "flexura/campaign/campaign_config.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/safety_nodes.h"
@@ -141,11 +143,17 @@ int answer_about_rod(const std::string& arm_file, std::istream& in, std::ostream
 int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err) {
   const auto start = Clock::now();
   const std::time_t started = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  const Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, arguments.seed});
+  const bool is_replay = !arguments.from.empty();
+  const Experiment experiment =
+      is_replay ? replayed_experiment(arguments.from, arguments.row.value(), arguments.sets, err)
+                : load_experiment(arguments.experiment, {arguments.sets, arguments.seed});
   if (experiment.task.empty())
     throw input_error(arguments.experiment, "nothing to do: expected at least one [[task]]", 1, 1);
-  const auto folder = make_new_folder(arguments.out.empty() ? default_results_folder(arguments.experiment)
-                                                            : std::filesystem::path(arguments.out));
+  std::filesystem::path desired = arguments.out;
+  if (arguments.out.empty())
+    desired = is_replay ? default_replay_folder(arguments.from, *arguments.row)
+                        : default_results_folder(arguments.experiment);
+  const auto folder = make_new_folder(desired);
   TerminalProgress progress(err);
   // A film takes about a tenth of the work of its pictures.
   const bool has_films = experiment.record.cameras && has_program(film_program);
@@ -243,9 +251,14 @@ int linearise_command(const std::string& arm_file, std::istream& in, std::ostrea
 
 int export_command(const ExportArguments& arguments, std::ostream& out, std::ostream& err) {
   const std::string& format = arguments.format;
-  constexpr std::array formats = {"csv", "mp4", "png", "gltf"};
+  constexpr std::array formats = {"csv", "mp4", "png", "gltf", "markdown"};
   if (std::ranges::find(formats, format) == formats.end())
-    throw input_error("--to", fmt::format("\"{}\": expected csv, mp4, png or gltf", format));
+    throw input_error("--to", fmt::format("\"{}\": expected csv, mp4, png, gltf or markdown", format));
+  if (std::filesystem::is_regular_file(arguments.results))
+    return export_campaign_command(arguments.results, format, arguments.out, out);
+  if (format == "markdown")
+    throw input_error("--to",
+                      "\"markdown\" is for the results of a campaign: expected csv, mp4, png or gltf");
   const bool is_gltf = format == "gltf";
   if (!is_gltf && !arguments.out.empty())
     throw input_error("--out",
@@ -267,8 +280,10 @@ int export_command(const ExportArguments& arguments, std::ostream& out, std::ost
   return exit_done;
 }
 
-int schema_command(const std::string& format, std::ostream& out) {
-  const TableInfo& info = fields_of(static_cast<const Experiment*>(nullptr)).info();
+int schema_command(const std::string& format, const std::string& subject, std::ostream& out) {
+  const TableInfo& info = subject == "campaign"
+                              ? fields_of(static_cast<const CampaignConfig*>(nullptr)).info()
+                              : fields_of(static_cast<const Experiment*>(nullptr)).info();
   out << (format == "json" ? write_json(json_schema(info), 2) + "\n" : markdown_reference(info));
   return exit_done;
 }

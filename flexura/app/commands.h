@@ -17,8 +17,10 @@ enum ExitStatus : int { exit_done = 0, exit_missed = 1, exit_bad_input = 2, exit
 
 /// Arguments of `flexura run`.
 struct RunArguments {
-  std::string experiment;
-  std::string out;  ///< Results folder; "": default.
+  std::string experiment;           ///< "": a run of a campaign.
+  std::string from;                 ///< Results of the campaign whose run is replayed; "": none.
+  std::optional<std::int64_t> row;  ///< Number of this run.
+  std::string out;                  ///< Results folder; "": default.
   std::vector<std::string> sets;
   std::optional<std::int64_t> seed;
   bool json = false;
@@ -38,9 +40,9 @@ struct CheckArguments {
 
 /// Arguments of `flexura export`.
 struct ExportArguments {
-  std::string results;
+  std::string results;  ///< Folder of a run, or file of a campaign.
   std::string format = "csv";
-  std::string out;  ///< New file, for glTF only; "": default.
+  std::string out;  ///< New file, for glTF and campaigns only; "": default.
 };
 
 // Each command writes its result to `out` and messages for the user to `err`, and returns an exit status.
@@ -53,6 +55,6 @@ int inverse_command(const std::string& arm_file, std::istream& in, std::ostream&
 int statics_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int linearise_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int export_command(const ExportArguments& arguments, std::ostream& out, std::ostream& err);
-int schema_command(const std::string& format, std::ostream& out);
+int schema_command(const std::string& format, const std::string& subject, std::ostream& out);
 
 }  // namespace flexura

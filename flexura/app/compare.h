@@ -30,8 +30,8 @@ struct ComparedValue {
 };
 
 /// Returns pairs of values of two summaries, in the order of the first summary. Values that only the second
-/// summary has follow. Items of a list of tables are matched by their key `name` (or `task`). Lists of tables
-/// without these keys are omitted.
+/// summary has are at the end. Items of a list of tables are matched by their key `name` (or `task`). Lists
+/// of tables without these keys are omitted.
 [[nodiscard]] std::vector<ComparedValue> compared_values(const Node& a, const Node& b);
 
 /// Prints the values that differ between the summaries of two results folders, as a table or JSON. If `out`

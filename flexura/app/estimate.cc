@@ -12,6 +12,7 @@
 
 #include "flexura/app/commands.h"
 #include "flexura/app/estimate_answer.h"
+#include "flexura/app/estimate_guess.h"
 #include "flexura/app/terminal_progress.h"
 #include "flexura/base/bytes.h"
 #include "flexura/base/source.h"
@@ -111,6 +112,7 @@ void add_notes(std::span<const PictureFile> pictures, std::span<const Observatio
 
 ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vector<MeasuredCamera>& cameras,
                            const EstimateConfig& config, Progress* progress) {
+  if (config.guess) return estimate_near_guess(pictures, cameras, config, progress);
   // The estimation takes about as long as a picture.
   const auto all = static_cast<double>(cameras.size() + 1);
   std::vector<PictureReport> report;

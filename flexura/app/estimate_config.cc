@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "flexura/app/estimate_guess.h"
 #include "flexura/base/source.h"
 #include "flexura/base/table.h"
 #include "flexura/experiment/experiment.h"
@@ -126,6 +127,21 @@ void check_arguments(const EstimateArguments& arguments) {
   if (arguments.length && !is_size(*arguments.length))
     throw input_error("--length", fmt::format("{} m: expected a number above 0, at most {:g}",
                                               *arguments.length, farthest_place));
+  if (arguments.guess.empty() && arguments.guess_std)
+    throw input_error("--guess-std", "expected --guess, too");
+  if (!arguments.guess.empty()) {
+    if (arguments.arm.empty())
+      throw input_error("--guess", "expected also --arm: the guess has one bend per section of the arm");
+    if (!arguments.markers.empty())
+      throw input_error("--guess", "--markers is not used with a guess: expected only one of them");
+    if (arguments.threshold.method || arguments.threshold.level || !arguments.threshold.figure.empty())
+      throw input_error("--guess", "no threshold is used with a guess: expected no option of the threshold");
+    constexpr double widest = 1;
+    const auto is_possible = [](double std) { return std > 0 && std <= widest; };
+    if (arguments.guess_std && !is_possible(*arguments.guess_std))
+      throw input_error("--guess-std", fmt::format("{} rad: expected a number above 0, at most {:g}",
+                                                   *arguments.guess_std, widest));
+  }
   constexpr std::int64_t most = 100000;
   if (arguments.points < 2 || arguments.points > most)
     throw input_error("--points", fmt::format("{}: expected 2 to {}", arguments.points, most));
@@ -145,11 +161,13 @@ EstimateConfig estimate_config(const EstimateArguments& arguments) {
   if (const auto twice = std::ranges::adjacent_find(markers, is_alike); twice != markers.end())
     throw input_error(
         "--markers",
-        fmt::format("the position {:.9g} of the arm's length occurs twice: expected each position once",
+        fmt::format("two markers are at {:.9g} times the arm's length: expected different positions",
                     *twice / config.prior.arm.length()));
   config.threshold = threshold_config(arguments.threshold);
   config.points = static_cast<std::size_t>(arguments.points);
   config.has_bends = is_described;
+  if (!arguments.guess.empty()) config.guess = read_guess(arguments.guess, config.prior.arm);
+  if (arguments.guess_std) config.guess_std = *arguments.guess_std;
   return config;
 }
 

@@ -24,6 +24,9 @@ struct EstimateConfig {
   /// What separates the arm from its surroundings in each picture; empty or null: brightness alone.
   std::vector<std::shared_ptr<const ArmScene>> scenes;
   EstimatorConfig estimator;
+  /// Guessed shape near which the tube is fitted; missing: the arm is found by its figures in the pictures.
+  std::optional<Shape> guess;
+  double guess_std = 0.1;    ///< Standard deviation of each bend of the guess, rad.
   std::size_t points = 101;  ///< Number of backbone points in the answer; at least 2.
   /// Whether the answer includes the bends of the sections; the arm's file must then describe the sections.
   bool has_bends = false;
@@ -40,7 +43,9 @@ struct EstimateArguments {
   std::vector<std::string> markers;
   ThresholdArguments threshold;
   SceneArguments scene;
-  std::int64_t points = 101;  ///< Number of backbone points to print.
+  std::string guess;                ///< JSON file with the guessed bends; "": none.
+  std::optional<double> guess_std;  ///< Standard deviation of each guessed bend, rad; default: 0.1.
+  std::int64_t points = 101;        ///< Number of backbone points to print.
 };
 
 /// Checks the arguments without reading the files. Throws InputError for wrong arguments.

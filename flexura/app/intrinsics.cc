@@ -1,6 +1,7 @@
 #include "flexura/app/intrinsics.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -42,6 +43,18 @@ void check_folder(const std::string& option, const std::string& file) {
                                         text_node(file).brief(), text_node(folder.string()).brief()));
 }
 
+void check_lens(const IntrinsicsArguments& arguments) {
+  const auto model = lens_model_of(arguments);
+  if (!model && !arguments.zooms.empty())
+    throw input_error("--lens", "best: expected brown, rational or fisheye for --zoom");
+  if (!arguments.distortion) return;
+  if (!model) throw input_error("--distortion", "expected a lens model, instead of --lens best");
+  const std::vector<std::string>& names = coefficient_names(*model);
+  if (*arguments.distortion < 0 || *arguments.distortion > static_cast<std::int64_t>(names.size()))
+    throw input_error("--distortion", fmt::format("{}: expected 0 to {} of {}", *arguments.distortion,
+                                                  names.size(), fmt::join(names, ", ")));
+}
+
 void check(const IntrinsicsArguments& arguments) {
   const bool has_pair = !arguments.left.empty() || !arguments.right.empty();
   const int kinds =
@@ -54,9 +67,7 @@ void check(const IntrinsicsArguments& arguments) {
         fmt::format(
             "{} picture{} for {} of --left: expected one per picture of --left, taken at the same time",
             arguments.right.size(), arguments.right.size() == 1 ? "" : "s", arguments.left.size()));
-  if (arguments.distortion < 0 || arguments.distortion > 5)
-    throw input_error("--distortion",
-                      fmt::format("{}: expected 0 to 5 of k1, k2, p1, p2, k3", arguments.distortion));
+  check_lens(arguments);
   constexpr std::int64_t most = 1000000;
   if (arguments.hold_out && (*arguments.hold_out < 2 || *arguments.hold_out > most))
     throw input_error(
@@ -90,10 +101,12 @@ Node cameras_answer(const IntrinsicsArguments& arguments, const BoardTarget& boa
   pictures.push_back(look_for_board(first, board, is_pair ? "--left" : "IMAGE", work.piece(0)));
   if (is_pair) pictures.push_back(look_for_board(arguments.right, board, "--right", work.piece(1)));
   work.piece(2).update(0, "fitting the cameras");
-  const IntrinsicsFit fit = fit_pictures(arguments, board, pictures);
+  const LensComparison lenses = compare_pictures(arguments, board, pictures);
+  const IntrinsicsFit& fit = lenses.trials[lenses.best].fit;
   Node::Table answer{{"found", {}, {fit.is_found, {}}}};
   if (!fit.is_found) answer.push_back({"reason", {}, text_node(fit.reason)});
   answer.push_back({"board", {}, board_node(board)});
+  if (lenses.trials.size() > 1) answer.push_back({"models", {}, models_node(lenses)});
   auto notes = notes_of(pictures, fit);
   for (std::string& note : unit_notes(arguments, board, fit)) notes.push_back(std::move(note));
   if (!notes.empty()) answer.push_back({"notes", {}, texts_node(notes)});
@@ -101,7 +114,7 @@ Node cameras_answer(const IntrinsicsArguments& arguments, const BoardTarget& boa
   add_held_out(fit, answer);
   Node::Array entries;
   for (std::size_t i = 0; i < names.size(); ++i)
-    entries.push_back(camera_node(names[i], pictures[i], fit, i, static_cast<int>(arguments.distortion)));
+    entries.push_back(camera_node(names[i], pictures[i], fit, i, arguments.distortion));
   if (fit.is_found) {
     std::vector<CalibratedCamera> cameras;
     cameras.reserve(names.size());

@@ -6,19 +6,20 @@
 #include <string>
 #include <vector>
 
+#include "flexura/app/board_arguments.h"
+
 namespace flexura {
 
 /// Arguments of `flexura intrinsics`.
-struct IntrinsicsArguments {
+struct IntrinsicsArguments : BoardArguments {
   std::vector<std::string>
       images;  ///< Pictures of one camera. Either `images`, or `left` and `right`, or `zooms` are given.
   std::vector<std::string> left, right;  ///< Pictures of two cameras, taken at the same times.
   /// Folders of pictures of one camera at several zooms: RATIO[@COUNT]=FOLDER or @COUNT=FOLDER.
   std::vector<std::string> zooms;
-  std::string board;  ///< Board size in points: COLUMNSxROWS.
-  double square = 0;  ///< Side of a square, m.
-  std::string pattern = "chessboard";
-  std::int64_t distortion = 5;  ///< Number of distortion coefficients to fit, of k1, k2, p1, p2, k3.
+  std::string lens = "brown";  ///< Lens model, or "best": the one that explains the pictures best.
+  std::optional<std::int64_t>
+      distortion;  ///< Number of distortion coefficients to fit; empty: all of the lens model.
   std::optional<std::int64_t>
       hold_out;  ///< N: every Nth view is excluded from the fit and tests it; empty: no view is excluded.
   std::vector<std::string> names;  ///< Camera names.

@@ -19,8 +19,12 @@
 namespace flexura {
 namespace {
 
-constexpr std::array<const char*, intrinsics_count> parameter_names = {"fx", "fy", "cx", "cy", "k1",
-                                                                       "k2", "p1", "p2", "k3"};
+// Returns the name of an intrinsic parameter; `parameter` is its index in the order of `intrinsics_count`.
+std::string parameter_name(const Intrinsics& lens, int parameter) {
+  constexpr std::array<const char*, 4> names = {"fx", "fy", "cx", "cy"};
+  const auto at = static_cast<std::size_t>(parameter);
+  return at < names.size() ? names[at] : coefficient_names(lens.distortion.model())[at - names.size()];
+}
 
 Node whole(std::size_t value) { return {static_cast<std::int64_t>(value), {}}; }
 template <typename Vector>
@@ -45,6 +49,8 @@ Node views_node(const BoardPictures& pictures, const IntrinsicsFit& fit, std::si
     } else if (camera < fit.cameras.size() && i < fit.cameras[camera].view_rms.size()) {
       const auto rms = fit.cameras[camera].view_rms[i];
       entry.push_back({"rms_px", {}, rms ? number_node(*rms) : Node{}});
+      const std::size_t seen = seen_points(pictures.observations[i].pixels);
+      if (seen < pictures.observations[i].pixels.size()) entry.push_back({"points", {}, whole(seen)});
       if (fit.is_held_out[i]) entry.push_back({"held_out", {}, {true, {}}});
     }
     views.push_back({std::move(entry), {}});
@@ -56,16 +62,16 @@ void add_numbers(const CameraFit& fit, Eigen::Index estimated, bool is_alone, No
   const Intrinsics& lens = fit.lens;
   Node::Table sigma;
   for (int i = 0; i < static_cast<int>(estimated); ++i)
-    sigma.push_back({parameter_names[static_cast<std::size_t>(i)], {}, number_node(fit.sigma(i))});
+    sigma.push_back({parameter_name(lens, i), {}, number_node(fit.sigma(i))});
   Node::Array undetermined;
-  for (const int i : fit.undetermined)
-    undetermined.push_back(text_node(parameter_names[static_cast<std::size_t>(i)]));
+  for (const int i : fit.undetermined) undetermined.push_back(text_node(parameter_name(lens, i)));
   entry.insert(
       entry.end(),
       {{"fx", {}, number_node(lens.fx)},
        {"fy", {}, number_node(lens.fy)},
        {"cx", {}, number_node(lens.cx)},
        {"cy", {}, number_node(lens.cy)},
+       {"model", {}, text_node(name_of(lens.distortion.model()))},
        {"distortion", {}, numbers(lens.distortion)},
        {"sigma", {}, {std::move(sigma), {}}},
        {"untold", {}, {std::move(undetermined), {}}},
@@ -94,15 +100,19 @@ void add_warnings(const BoardPictures& pictures, const CameraFit& fit, std::vect
 }  // namespace
 
 Node board_node(const BoardTarget& board) {
-  return {Node::Table{{"pattern", {}, text_node(name_of(board.pattern))},
-                      {"columns", {}, {std::int64_t{board.columns}, {}}},
-                      {"rows", {}, {std::int64_t{board.rows}, {}}},
-                      {"square", {}, number_node(board.square)}},
-          {}};
+  Node::Table entry{{"pattern", {}, text_node(name_of(board.pattern))},
+                    {"columns", {}, {std::int64_t{board.columns}, {}}},
+                    {"rows", {}, {std::int64_t{board.rows}, {}}},
+                    {"square", {}, number_node(board.square)}};
+  if (board.has_markers()) {
+    entry.push_back({"marker", {}, number_node(board.marker)});
+    entry.push_back({"family", {}, text_node(name_of(board.family))});
+  }
+  return {std::move(entry), {}};
 }
 
 Node camera_node(const std::string& name, const BoardPictures& pictures, const IntrinsicsFit& fit,
-                 std::size_t camera, int distortion) {
+                 std::size_t camera, std::optional<std::int64_t> distortion) {
   std::size_t used = 0;
   for (std::size_t i = 0; i < pictures.observations.size(); ++i)
     used += pictures.observations[i].is_found() && !fit.is_held_out[i] ? 1 : 0;
@@ -113,10 +123,27 @@ Node camera_node(const std::string& name, const BoardPictures& pictures, const I
        {Node::Array{{std::int64_t{pictures.size[0]}, {}}, {std::int64_t{pictures.size[1]}, {}}}, {}}},
       {"views_used", {}, whole(used)}};
   // A fit that failed early has no parameters.
-  if (fit.noise > 0 || fit.is_found)
-    add_numbers(fit.cameras[camera], 4 + distortion, fit.cameras.size() == 1, entry);
+  if (fit.noise > 0 || fit.is_found) {
+    const CameraFit& own = fit.cameras[camera];
+    add_numbers(own, distortion ? 4 + *distortion : own.lens.size(), fit.cameras.size() == 1, entry);
+  }
   entry.push_back({"views", {}, views_node(pictures, fit, camera)});
   return {std::move(entry), {}};
+}
+
+Node models_node(const LensComparison& lenses) {
+  Node::Array models;
+  for (std::size_t i = 0; i < lenses.trials.size(); ++i) {
+    const LensTrial& trial = lenses.trials[i];
+    Node::Table entry{{"model", {}, text_node(name_of(trial.model))},
+                      {"found", {}, {trial.fit.is_found, {}}}};
+    if (!trial.fit.is_found) entry.push_back({"reason", {}, text_node(trial.fit.reason)});
+    if (trial.fit.points > 0) entry.push_back({"rms_px", {}, number_node(trial.fit.rms)});
+    if (trial.fit.is_found) entry.push_back({"criterion", {}, number_node(trial.criterion)});
+    entry.push_back({"chosen", {}, {i == lenses.best, {}}});
+    models.push_back({std::move(entry), {}});
+  }
+  return {std::move(models), {}};
 }
 
 Node pair_node(const IntrinsicsFit& fit) {
@@ -140,8 +167,8 @@ void add_turned(const BoardPictures& pictures, std::vector<std::string>& notes) 
   for (std::size_t i = 0; i < pictures.orientations.size(); ++i) {
     if (pictures.orientations[i] == pictures.orientations.front()) continue;
     notes.push_back(fmt::format(
-        "{} was turned as its orientation tag says, but {} was not turned in this way: if the camera "
-        "was turned between them, the principal point is wrong; then remove the tags",
+        "{} was turned as its orientation tag says, but {} was not. If the camera was turned between "
+        "the pictures, the principal point is wrong: then remove the tags",
         pictures.names[i], pictures.names.front()));
     return;
   }
@@ -164,15 +191,17 @@ std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras, con
                       i + 1, alone, together));
     if (const LensMisfit& misfit = fit.cameras[i].misfit; fit.is_found && misfit.is_systematic())
       notes.push_back(fmt::format(
-          "the residuals of camera {} are alike in neighbouring points: the lens model does not fit "
-          "the lens, or the board is not flat",
+          "the residuals of camera {} are correlated between neighbouring points: the lens model does not "
+          "fit the lens (--lens), or the board is not flat",
           i + 1));
     const auto& undetermined = fit.cameras[i].undetermined;
-    if (!undetermined.empty() && undetermined.front() >= 4)
+    // The coefficients of a rational lens can compensate each other.
+    const bool is_rational = fit.cameras[i].lens.distortion.model() == LensModel::rational;
+    if (!undetermined.empty() && undetermined.front() >= 4 && !is_rational)
       notes.push_back(
           fmt::format("{} of the lens is not observable in these views: use fewer coefficients with "
                       "--distortion, or views in which the board reaches the image's corners",
-                      parameter_names[static_cast<std::size_t>(undetermined.front())]));
+                      parameter_name(fit.cameras[i].lens, undetermined.front())));
   }
   return notes;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +18,13 @@ namespace flexura {
 [[nodiscard]] Node board_node(const BoardTarget& board);
 
 /// Returns one camera's parameters with their standard deviations and covariance, and the results for each of
-/// its pictures.
+/// its pictures. `distortion` is the number of fitted distortion coefficients; empty: all of the lens model.
 [[nodiscard]] Node camera_node(const std::string& name, const BoardPictures& pictures,
-                               const IntrinsicsFit& fit, std::size_t camera, int distortion);
+                               const IntrinsicsFit& fit, std::size_t camera,
+                               std::optional<std::int64_t> distortion);
+
+/// Returns the results of all compared lens models, and which one was chosen.
+[[nodiscard]] Node models_node(const LensComparison& lenses);
 
 /// Returns the pose of the second camera relative to the first.
 [[nodiscard]] Node pair_node(const IntrinsicsFit& fit);

@@ -40,8 +40,13 @@ const Table<RigFile>& fields_of(const RigFile*) {
 }
 
 LensConfig lens_config(const Intrinsics& lens) {
-  return {
-      .fx = lens.fx, .fy = lens.fy, .cx = lens.cx, .cy = lens.cy, .distortion = lens.distortion, .zoom = {}};
+  return {.fx = lens.fx,
+          .fy = lens.fy,
+          .cx = lens.cx,
+          .cy = lens.cy,
+          .model = lens.distortion.model(),
+          .distortion = lens.distortion,
+          .zoom = {}};
 }
 
 ViewPrior view_prior_of(const IntrinsicsFit& fit, std::size_t camera) {
@@ -64,7 +69,7 @@ std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras, 
     written.name = camera.name;
     written.fx = camera.lens.fx, written.fy = camera.lens.fy;
     written.cx = *camera.lens.cx, written.cy = *camera.lens.cy;
-    written.distortion = camera.lens.distortion;
+    written.model = camera.lens.model, written.distortion = camera.lens.distortion;
     written.size = {camera.size[0], camera.size[1]};
     written.position = array_of(camera.pose.position);
     written.rotation.value = array_of(quaternion_wxyz(camera.pose.rotation));

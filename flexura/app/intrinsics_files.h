@@ -38,8 +38,8 @@ const Table<RigFile>& fields_of(const RigFile*);
 /// Returns the file representation of a lens without zoom.
 [[nodiscard]] LensConfig lens_config(const Intrinsics& lens);
 
-/// Returns the prior standard deviations for a camera of a fit. They are three times the standard deviations
-/// of the fit's covariance, which assumes independent errors of all corners. The prior of the focal length
+/// Returns the prior standard deviations for a camera of a fit. Each is three times the standard deviation of
+/// the fit. The fit's covariance assumes independent errors of all corners. The prior of the focal length
 /// follows from the focal lengths' standard deviations. The prior of the rotation follows from the standard
 /// deviations of the principal point and of the orientation relative to the first camera.
 [[nodiscard]] ViewPrior view_prior_of(const IntrinsicsFit& fit, std::size_t camera);

@@ -87,6 +87,13 @@ void refuse_larger(const BoardPictures& pictures, const BoardTarget& board) {
                   pictures.names[static_cast<std::size_t>(first - pictures.observations.begin())]));
 }
 
+// Points that are not seen are NaN.
+bool are_equal(const std::vector<Eigen::Vector2d>& one, const std::vector<Eigen::Vector2d>& other) {
+  return std::ranges::equal(one, other, [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a == b || (!is_seen(a) && !is_seen(b));
+  });
+}
+
 // Rejects pictures given twice, which would count as two observations. Copies have bitwise equal corners,
 // whatever their names; noise makes two pictures of one board differ.
 void refuse_twice(const std::vector<BoardPictures>& cameras) {
@@ -97,7 +104,7 @@ void refuse_twice(const std::vector<BoardPictures>& cameras) {
       const BoardObservation& observation = camera.observations[i];
       if (!observation.is_found()) continue;
       const auto same = std::ranges::find_if(
-          once, [&](const auto& earlier) { return earlier.second->pixels == observation.pixels; });
+          once, [&](const auto& earlier) { return are_equal(earlier.second->pixels, observation.pixels); });
       if (same == once.end())
         once.emplace_back(&camera.names[i], &observation);
       else
@@ -113,34 +120,6 @@ void refuse_twice(const std::vector<BoardPictures>& cameras) {
 }
 
 }  // namespace
-
-BoardTarget board_of(const IntrinsicsArguments& arguments) {
-  constexpr int least = 3, most = 50;
-  BoardTarget board;
-  const std::size_t cross = arguments.board.find('x');
-  const std::string_view text = arguments.board;
-  const auto columns = number_in<int>(text.substr(0, cross));
-  const auto rows = cross == std::string::npos ? std::nullopt : number_in<int>(text.substr(cross + 1));
-  const auto is_size = [](const std::optional<int>& n) { return n && *n >= least && *n <= most; };
-  if (!is_size(columns) || !is_size(rows))
-    throw input_error(
-        "--board", fmt::format("{}: expected COLUMNSxROWS of inner corners (or circles), each from {} to {}",
-                               quoted(arguments.board), least, most));
-  board.columns = *columns, board.rows = *rows;
-  constexpr double smallest = 1e-6, largest = 1000;  // m
-  const bool is_a_side = arguments.square >= smallest && arguments.square <= largest;
-  if (!is_a_side)
-    throw input_error("--square", fmt::format("{} m: expected a number from {} to {}", arguments.square,
-                                              smallest, largest));
-  board.square = arguments.square;
-  const std::vector<std::string>& names = names_of(static_cast<const BoardPattern*>(nullptr));
-  const auto found = std::ranges::find(names, arguments.pattern);
-  if (found == names.end())
-    throw input_error("--pattern", fmt::format("{}: expected one of \"{}\"", quoted(arguments.pattern),
-                                               fmt::join(names, "\", \"")));
-  board.pattern = static_cast<BoardPattern>(found - names.begin());
-  return board;
-}
 
 BoardPictures look_for_board(const std::vector<std::string>& files, const BoardTarget& board,
                              const std::string& option, Progress& progress) {
@@ -178,7 +157,9 @@ std::vector<ZoomGroup> zoom_groups(const std::vector<std::string>& zooms) {
     const ZoomGroup& group = groups.emplace_back(zoom_group(text));
     if (group.ratio.has_value() != groups.front().ratio.has_value() ||
         group.count.has_value() != groups.front().count.has_value())
-      throw input_error("--zoom", quoted(text) + ": expected a ratio, and a count, in all groups or in none");
+      throw input_error(
+          "--zoom",
+          quoted(text) + ": expected a ratio in all groups or in none, and a count in all groups or in none");
   }
   if (groups.size() < 2) throw input_error("--zoom", "one group of pictures: expected at least two");
   return groups;
@@ -204,17 +185,34 @@ std::vector<std::string> pictures_in(const std::string& folder) {
   return files;
 }
 
-IntrinsicsFit fit_pictures(const IntrinsicsArguments& arguments, const BoardTarget& board,
-                           const std::vector<BoardPictures>& pictures) {
+std::optional<LensModel> lens_model_of(const IntrinsicsArguments& arguments) {
+  const std::vector<std::string>& names = names_of(static_cast<const LensModel*>(nullptr));
+  const auto at = std::ranges::find(names, arguments.lens);
+  if (at != names.end()) return static_cast<LensModel>(at - names.begin());
+  if (arguments.lens == "best") return std::nullopt;
+  throw input_error("--lens", fmt::format("{}: expected one of {}, best", text_node(arguments.lens).brief(),
+                                          fmt::join(names, ", ")));
+}
+
+LensComparison compare_pictures(const IntrinsicsArguments& arguments, const BoardTarget& board,
+                                const std::vector<BoardPictures>& pictures) {
   refuse_twice(pictures);
   std::vector<std::array<int, 2>> sizes;
   sizes.reserve(pictures.size());
   for (const BoardPictures& camera : pictures) sizes.push_back(camera.size);
   const std::vector<BoardView> views = views_of(pictures);
-  return fit_intrinsics(board.points(), views, sizes,
-                        {.distortion = static_cast<int>(arguments.distortion),
-                         .hold_out = static_cast<int>(arguments.hold_out.value_or(0)),
-                         .orders = board.equal_orders()});
+  const auto model = lens_model_of(arguments);
+  IntrinsicsConfig config{.model = model.value_or(LensModel::brown),
+                          .hold_out = static_cast<int>(arguments.hold_out.value_or(0)),
+                          .orders = board.equal_orders()};
+  if (arguments.distortion) config.distortion = static_cast<int>(*arguments.distortion);
+  if (!model) return compare_lenses(board.points(), views, sizes, config);
+  return {{{config.model, fit_intrinsics(board.points(), views, sizes, config), 0}}, 0};
+}
+
+IntrinsicsFit fit_pictures(const IntrinsicsArguments& arguments, const BoardTarget& board,
+                           const std::vector<BoardPictures>& pictures) {
+  return compare_pictures(arguments, board, pictures).trials.front().fit;
 }
 
 }  // namespace flexura

@@ -10,6 +10,8 @@
 #include "flexura/board/board_finder.h"
 #include "flexura/board/board_target.h"
 #include "flexura/board/intrinsics_fit.h"
+#include "flexura/board/lens_comparison.h"
+#include "flexura/camera/distortion.h"
 
 namespace flexura {
 
@@ -27,12 +29,9 @@ struct ZoomGroup {
   std::string folder;
 };
 
-/// Returns the board that the arguments describe. Throws InputError for a board that cannot be detected.
-[[nodiscard]] BoardTarget board_of(const IntrinsicsArguments& arguments);
-
 /// Reads pictures and detects the board in each of them. Throws InputError for fewer than two pictures, for
-/// unreadable pictures, and for pictures of different sizes. Also throws it if most of the pictures show a
-/// board with more points than `board`.
+/// unreadable pictures, and for pictures of different sizes. Also throws InputError if most of the pictures
+/// show a board with more points than `board`.
 [[nodiscard]] BoardPictures look_for_board(const std::vector<std::string>& files, const BoardTarget& board,
                                            const std::string& option, Progress& progress);
 
@@ -43,9 +42,15 @@ struct ZoomGroup {
 /// Returns the picture files in a folder, sorted by name. Throws InputError if the path is not a folder.
 [[nodiscard]] std::vector<std::string> pictures_in(const std::string& folder);
 
+/// Returns the lens model of `--lens`; empty for "best". Throws InputError for an unknown one.
+[[nodiscard]] std::optional<LensModel> lens_model_of(const IntrinsicsArguments& arguments);
+
 /// Calibrates one camera, or two cameras whose pictures with equal index were taken at the same time. Throws
-/// InputError if a picture is given twice.
+/// InputError if a picture is given twice. Requires a lens model, not "best".
 [[nodiscard]] IntrinsicsFit fit_pictures(const IntrinsicsArguments& arguments, const BoardTarget& board,
                                          const std::vector<BoardPictures>& pictures);
+/// As fit_pictures(), with each lens model for `--lens best`; otherwise the result has one trial.
+[[nodiscard]] LensComparison compare_pictures(const IntrinsicsArguments& arguments, const BoardTarget& board,
+                                              const std::vector<BoardPictures>& pictures);
 
 }  // namespace flexura

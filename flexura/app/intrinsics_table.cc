@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "flexura/app/words.h"
+#include "flexura/camera/distortion.h"
 
 namespace flexura {
 namespace {
@@ -43,7 +44,10 @@ std::string number_of(const Node& camera, std::string_view key) {
   const Node* sigma = sigmas == nullptr ? nullptr : sigmas->find(key);
   if (sigma == nullptr) return "";
   if (const Node* value = camera.find(key)) return with_sigma(*value->as<double>(), *sigma->as<double>());
-  constexpr std::array<std::string_view, 5> coefficients = {"k1", "k2", "p1", "p2", "k3"};
+  const std::vector<std::string>& models = names_of(static_cast<const LensModel*>(nullptr));
+  const auto model =
+      static_cast<LensModel>(std::ranges::find(models, text_of(camera, "model")) - models.begin());
+  const std::vector<std::string>& coefficients = coefficient_names(model);
   const auto index = static_cast<std::size_t>(std::ranges::find(coefficients, key) - coefficients.begin());
   const Node::Array& distortion = list_of(camera, "distortion");
   if (index >= distortion.size()) return "";
@@ -71,6 +75,13 @@ std::string unknown_of(const Node& camera) {
   std::vector<std::string> names;
   for (const Node& name : list_of(camera, "untold")) names.push_back(*name.as<std::string>());
   return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// Returns what came of a compared lens model.
+std::string result_of(const Node& model) {
+  if (model.find("reason") != nullptr) return text_of(model, "reason");
+  return fmt::format("rms {} px{}", rms_of(model),
+                     *model.find("chosen")->as<bool>() ? ", explains the pictures best" : "");
 }
 
 class Lines {
@@ -104,11 +115,13 @@ void print_pictures_without(const Node::Array& cameras, std::ostream& out) {
 void print_intrinsics(const Node& answer, std::ostream& out) {
   const Node::Array& cameras = list_of(answer, answer.find("zoom") == nullptr ? "cameras" : "zoom");
   if (answer.find("reason") != nullptr) print_line(out, "not found", text_of(answer, "reason"));
+  for (const Node& model : list_of(answer, "models"))
+    print_line(out, "lens model " + text_of(model, "model"), result_of(model));
   Lines lines(cameras, out);
   lines.add("", heading_of);
   for (const char* key : {"fx", "fy", "cx", "cy"})
     lines.add(fmt::format("{} (px)", key), [key](const Node& camera) { return number_of(camera, key); });
-  for (const char* key : {"k1", "k2", "p1", "p2", "k3"})
+  for (const char* key : {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"})
     lines.add(key, [key](const Node& camera) { return number_of(camera, key); });
   lines.add("rms (px)", rms_of);
   lines.add("pictures used", pictures_of);

@@ -9,8 +9,9 @@
 
 namespace flexura {
 
-/// Returns notes on lengths that are probably not in metres: a board larger than 3 m, or a first camera that
-/// is over 100 times as far from the origin as the boards are from it. Each note names the factor.
+/// Returns notes on lengths that are probably not in metres. Such a length is the size of a board above 3 m.
+/// Another is a distance of the first camera from the origin above 100 times the distance of the boards from
+/// the camera. Each note names the factor.
 [[nodiscard]] std::vector<std::string> unit_notes(const IntrinsicsArguments& arguments,
                                                   const BoardTarget& board, const IntrinsicsFit& fit);
 

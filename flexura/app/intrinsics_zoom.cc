@@ -47,6 +47,7 @@ LensConfig zoom_lens(std::vector<MeasuredZoom>& zooms) {
       lens.zoom, {}, [](const ZoomRow& row) { return std::abs(std::log(row.ratio)); });
   lens.fx = *one.fx / one.ratio, lens.fy = *one.fy / one.ratio;
   lens.cx = one.cx, lens.cy = one.cy, lens.distortion = *one.distortion;
+  lens.model = one.distortion->model();
   return lens;
 }
 
@@ -80,7 +81,7 @@ Node zoom_node(const IntrinsicsArguments& arguments, const std::string& name, co
   if (const auto notes = notes_of({zoom.pictures}, zoom.fit); !notes.empty())
     entry.push_back({"notes", {}, texts_node(notes)});
   add_held_out(zoom.fit, entry);
-  Node camera = camera_node(name, zoom.pictures, zoom.fit, 0, static_cast<int>(arguments.distortion));
+  Node camera = camera_node(name, zoom.pictures, zoom.fit, 0, arguments.distortion);
   auto& members = *camera.as<Node::Table>();
   entry.insert(entry.end(), members.begin(), members.end());
   return {std::move(entry), {}};

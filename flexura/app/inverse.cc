@@ -86,7 +86,7 @@ void check_target(const InverseRequest& request, Reader& reader) {
     reader.problem("gives the orientation twice: expected either direction or rotation");
   }
   if (request.direction && vector(*request.direction).isZero(0.0)) {
-    reader.problem_at("direction", "is zero: expected a direction");
+    reader.problem_at("direction", "is zero: expected a vector other than zero");
   }
   if (request.rotation) {
     const std::string problem = quaternion_problem(*request.rotation);

@@ -279,7 +279,7 @@ TEST(LineariseCommand, AnswersEveryLineAndRefusesAnArmWithoutMass) {
     return std::string("no error");
   };
   EXPECT_EQ(refused("examples/09_tendon_statics/experiment.toml"),
-            ": section 1: a rod in motion must have a density or a mass for each metre");
+            ": section 1: a rod in motion must have a density or a mass per length");
   EXPECT_THAT(refused("examples/01_paper_arm/experiment.toml"), HasSubstr("has no material"));
 }
 

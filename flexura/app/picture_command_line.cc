@@ -2,6 +2,7 @@
 #include <memory>
 #include <string>
 
+#include "flexura/app/board.h"
 #include "flexura/app/command_line.h"
 #include "flexura/app/estimate.h"
 #include "flexura/app/intrinsics.h"
@@ -128,6 +129,14 @@ void add_estimate(CLI::App& app, Command& chosen) {
   add_threshold_options(*estimate, arguments->threshold);
   add_scene_options(*estimate, arguments->scene);
   estimate
+      ->add_option("--guess", arguments->guess,
+                   "JSON file with guessed bends, such as an earlier answer: fit the arm near this shape")
+      ->type_name("FILE");
+  estimate
+      ->add_option("--guess-std", arguments->guess_std,
+                   "Standard deviation of each guessed bend, rad (default: 0.1)")
+      ->type_name("RAD");
+  estimate
       ->add_option("--points", arguments->points,
                    "Number of points of the printed backbone, at least 2 (default: 101)")
       ->type_name("N");
@@ -137,6 +146,41 @@ void add_estimate(CLI::App& app, Command& chosen) {
       return estimate_command(*arguments, std::cout, &progress);
     };
   });
+}
+
+void add_board_options(CLI::App& command, BoardArguments& board) {
+  command.add_option("--board", board.board, "Number of inner corners, circles or AprilTags: COLUMNSxROWS")
+      ->type_name("CxR")
+      ->required();
+  command
+      .add_option("--square", board.square,
+                  "Side of a square, or distance between rows of circles or AprilTags, m")
+      ->type_name("S")
+      ->required();
+  command.add_option("--pattern", board.pattern, "Pattern of the board (default: chessboard)")
+      ->type_name("chessboard|circles|asymmetric-circles|charuco|apriltags");
+  command
+      .add_option("--marker", board.marker,
+                  "Side of the markers of charuco or apriltags, with their border, m")
+      ->type_name("M");
+  command.add_option("--family", board.family, "Family of the markers (default: 4x4; apriltags: 36h11)")
+      ->type_name("4x4|5x5|6x6|36h11");
+}
+
+void add_board(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<DrawBoardArguments>();
+  CLI::App* board = add_command(app, "board", command_group::pictures, "Draw a calibration board to print",
+                                "flexura board --board 8x5 --square 0.028 --pattern charuco --marker 0.02 "
+                                "--paper a4 --out board.pdf");
+  add_board_options(*board, *arguments);
+  board
+      ->add_option("--paper", arguments->paper, "Size of the sheet (default: fit, the board with its border)")
+      ->type_name("a4|a3|letter|fit");
+  board->add_option("--out", arguments->out, "The file to write (.pdf or .svg)")
+      ->type_name("FILE")
+      ->required();
+  board->callback(
+      [&chosen, arguments] { chosen = [arguments] { return board_command(*arguments, std::cout); }; });
 }
 
 void add_intrinsics(CLI::App& app, Command& chosen) {
@@ -155,18 +199,14 @@ void add_intrinsics(CLI::App& app, Command& chosen) {
                    "A folder of pictures at one zoom: RATIO=, RATIO@COUNT= or @COUNT=FOLDER (repeatable)")
       ->type_name("ZOOM=FOLDER")
       ->allow_extra_args(false);
-  intrinsics->add_option("--board", arguments->board, "Number of inner corners or circles: COLUMNSxROWS")
-      ->type_name("CxR")
-      ->required();
+  add_board_options(*intrinsics, *arguments);
   intrinsics
-      ->add_option("--square", arguments->square, "Side of a square, or distance between rows of circles, m")
-      ->type_name("S")
-      ->required();
-  intrinsics->add_option("--pattern", arguments->pattern, "Pattern of the board (default: chessboard)")
-      ->type_name("chessboard|circles|asymmetric-circles");
+      ->add_option("--lens", arguments->lens,
+                   "Lens model, or best: compare all models and use the best one (default: brown)")
+      ->type_name("brown|rational|fisheye|best");
   intrinsics
       ->add_option("--distortion", arguments->distortion,
-                   "Number of the coefficients k1, k2, p1, p2, k3 to estimate, 0 to 5 (default: 5)")
+                   "Number of the model's distortion coefficients to estimate (default: all)")
       ->type_name("N");
   intrinsics
       ->add_option("--hold-out", arguments->hold_out,
@@ -210,6 +250,7 @@ void add_picture_commands(CLI::App& app, Command& chosen) {
   add_measure(app, chosen);
   add_estimate(app, chosen);
   add_intrinsics(app, chosen);
+  add_board(app, chosen);
 }
 
 }  // namespace flexura

@@ -70,7 +70,7 @@ TEST_F(Program, PrintsACompletionThatBashUnderstands) {
       "ask flexura run --se\nask flexura run an\nask flexura check not\n");
   EXPECT_EQ(std::system(("cd '" + path("") + "' && bash ask.sh > answers.txt").c_str()), 0);
   EXPECT_EQ(read_text_file(path("answers.txt"), 1 << 16),
-            "estimate,\ncsv,mp4,png,gltf,\nservo,\ncircle,\n--set,--seed,\nan arm.toml,\n,\n");
+            "estimate,\ncsv,mp4,png,gltf,markdown,\nservo,\ncircle,\n--set,--seed,\nan arm.toml,\n,\n");
 }
 
 TEST_F(Program, PrintsTheManualPageAndZshsCompletionOfEveryCommand) {
@@ -80,7 +80,7 @@ TEST_F(Program, PrintsTheManualPageAndZshsCompletionOfEveryCommand) {
   EXPECT_THAT(zsh, StartsWith("#compdef flexura\n"));
   for (const char* command :
        {"new", "view", "check", "run", "export", "fk", "ik", "statics", "render", "devices", "jog", "measure",
-        "estimate", "intrinsics", "schema", "completion", "man"}) {
+        "estimate", "intrinsics", "board", "schema", "completion", "man"}) {
     EXPECT_THAT(manual, HasSubstr(std::string(".SS \"flexura ") + command + "\"\n"));
     EXPECT_THAT(zsh, HasSubstr(std::string("    ") + command + ")\n"));
     EXPECT_THAT(run(std::string(command) + " --help").out, HasSubstr("\nExample:\n  "))

@@ -306,6 +306,9 @@ TEST_F(Program, ReferencePageIsTheOneItPrints) {
   EXPECT_EQ(read_text_file(checkout_file("docs/experiment-file.md"), 1 << 20),
             run("schema --format markdown").out)
       << "make it anew: flexura schema --format markdown >docs/experiment-file.md";
+  EXPECT_EQ(read_text_file(checkout_file("docs/campaign-file.md"), 1 << 20),
+            run("schema --format markdown --of campaign").out)
+      << "make it anew: flexura schema --format markdown --of campaign >docs/campaign-file.md";
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ struct RenderArguments {
 };
 
 /// Writes the image of a camera whose exposure starts at the given time of the experiment's run. The image
-/// equals the one that the run would record. With `truth`, also writes exact data for the middle of the
-/// exposure: depth (NAME_depth.tiff, m), labels (NAME_labels.png, 16 bits) and curves (NAME_truth.json).
+/// equals the image that the run would record. If `truth` is true, also writes exact data for the middle of
+/// the exposure: depth (NAME_depth.tiff, m), labels (NAME_labels.png, 16 bits) and curves (NAME_truth.json).
 /// Prints the names of the files. Throws InputError for bad input, and std::runtime_error if a file cannot be
 /// written.
 int render_command(const RenderArguments& arguments, std::ostream& out);

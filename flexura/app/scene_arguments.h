@@ -12,7 +12,7 @@ namespace flexura {
 /// Command-line arguments that tell the arm from its surroundings. Lists have no element, one for all
 /// pictures, or one for each picture.
 struct SceneArguments {
-  /// Corners "U,V,U,V,..." of the region in which the arm is, px: two opposite ones of a rectangle, or at
+  /// Corners "U,V,U,V,..." of the region in which the arm is, px: two opposite corners of a rectangle, or at
   /// least three of a polygon.
   std::vector<std::string> regions = {};
   std::vector<std::string> backgrounds = {};  ///< Picture files without the arm.

@@ -81,7 +81,7 @@ void check_statics_target(const Rod& rod, const StaticsTarget& target, Reader& r
   if (target.direction && target.rotation)
     reader.problem_at("target", "gives the orientation twice: expected either direction or rotation");
   if (target.direction && !(vector(*target.direction).norm() > 1e-9))
-    reader.problem_at("target.direction", "is zero: expected a direction");
+    reader.problem_at("target.direction", "is zero: expected a vector other than zero");
   if (target.rotation) {
     const std::string problem = quaternion_problem(*target.rotation);
     if (!problem.empty()) reader.problem_at("target.rotation", problem);

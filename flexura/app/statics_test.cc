@@ -271,7 +271,7 @@ TEST(AnswerStatics, AnswersABadLineWithItsError) {
       {R"({"target":{"tip":[1,2,1e300]}})", "target.tip[2] = 1e+300: expected a number from"},
       {R"({"target":{"tip":[0,0,1]},"tensions":[0,0,0,0,0,0]})",
        "target: is given together with tensions or displacements: expected only one of the three keys"},
-      {R"({"target":{"direction":[0,0,0]}})", "target.direction: is zero: expected a direction"},
+      {R"({"target":{"direction":[0,0,0]}})", "target.direction: is zero: expected a vector other than zero"},
       {R"({"target":{"rotation":[1,1,1,1]}})", "target.rotation"},
       {R"({"target":{"direction":[0,0,1],"rotation":[1,0,0,0]}})", "gives the orientation twice"},
       {R"({"target":{"shape":[]}})", "target.shape"},

@@ -22,10 +22,10 @@ struct CameraAlone {
 [[nodiscard]] double rms_of(double square_sum, std::size_t points);
 
 /// Calibrates one camera from the views in which the camera saw the board. `size` is the image's width and
-/// height, px. Uses Zhang's closed form and least squares. If the result is bad, tries other initial focal
-/// lengths. With fewer than two views, the result is not converged.
+/// height, px. Uses Zhang's closed form and least squares. If the result is bad, or the lens is a fisheye
+/// lens, tries other initial focal lengths. With fewer than two views, the result is not converged.
 [[nodiscard]] CameraAlone fit_alone(std::span<const Eigen::Vector2d> points, std::span<const BoardView> views,
-                                    std::size_t camera, const std::array<int, 2>& size,
+                                    std::size_t camera, const std::array<int, 2>& size, LensModel model,
                                     const BundleConfig& config);
 
 /// Pose of a camera relative to the first camera, from one view in which both cameras saw the board.

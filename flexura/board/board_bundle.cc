@@ -37,7 +37,8 @@ Intrinsics moved(const Intrinsics& lens, const VectorXd& step) {
   const auto part = [&](Index i) { return i < step.size() ? step[i] : 0.0; };
   Intrinsics result = lens;
   result.fx += part(0), result.fy += part(1), result.cx += part(2), result.cy += part(3);
-  for (std::size_t i = 0; i < 5; ++i) result.distortion[i] += part(4 + static_cast<Index>(i));
+  for (std::size_t i = 0; i < result.distortion.size(); ++i)
+    result.distortion[i] += part(4 + static_cast<Index>(i));
   return result;
 }
 
@@ -157,6 +158,10 @@ class NormalEquations {
     const Eigen::Matrix3d R_C1 = X_1C.rotation.transpose();
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const auto row = 2 * static_cast<Index>(i);
+      if (!is_seen(views_[view].pixels[camera][i])) {
+        J_.middleRows<2>(row).setZero(), error_.segment<2>(row).setZero();
+        continue;
+      }
       const Vector3d arm = X_1B.rotation.leftCols<2>() * points_[i],
                      p_CP_1 = X_1B.position + arm - X_1C.position;
       const auto projection = lens.project_with_derivatives(R_C1 * p_CP_1);
@@ -221,6 +226,10 @@ BoardBundle moved(const BoardBundle& bundle, const NormalEquations& equations, c
 
 }  // namespace
 
+std::size_t seen_points(std::span<const Vector2d> pixels) {
+  return static_cast<std::size_t>(std::ranges::count_if(pixels, is_seen));
+}
+
 std::optional<double> square_sum(std::span<const Vector2d> points, const BoardView& view,
                                  const BoardBundle& bundle, std::size_t camera, const Pose& X_1B) {
   if (view.pixels[camera].empty()) return 0;
@@ -228,6 +237,7 @@ std::optional<double> square_sum(std::span<const Vector2d> points, const BoardVi
   const Pose X_CB = bundle.cameras[camera].inverse() * X_1B;
   double sum = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!is_seen(view.pixels[camera][i])) continue;
     const auto pixel = lens.project(X_CB.position + X_CB.rotation.leftCols<2>() * points[i]);
     if (!pixel) return std::nullopt;
     sum += (*pixel - view.pixels[camera][i]).squaredNorm();
@@ -244,7 +254,7 @@ BundleFit fit_bundle(std::span<const Vector2d> points, std::span<const BoardView
   if (!std::isfinite(first) || !equations.linearize(start)) return fit;
   fit.square_sum = first, fit.steps = 1;
   for (const BoardView& view : views)
-    for (const auto& pixels : view.pixels) fit.points += pixels.size();
+    for (const auto& pixels : view.pixels) fit.points += seen_points(pixels);
   bool is_shown = true;  // Whether the equations are those of fit.bundle.
   BoardBundle tried;
   VectorXd cameras;
@@ -256,9 +266,8 @@ BundleFit fit_bundle(std::span<const Vector2d> points, std::span<const BoardView
     return {.cost = equations.square_sum(tried)};
   };
   const auto keep = [&](const TriedStep& step, double& cost) {
-    constexpr double exact = 1e-20;  // px^2 per point
-    const bool is_small =
-        cost - step.cost <= config.least_gain * cost || step.cost < exact * static_cast<double>(fit.points);
+    const bool is_small = cost - step.cost <= config.least_gain * cost ||
+                          step.cost < config.exact * static_cast<double>(fit.points);
     std::swap(fit.bundle, tried);
     cost = fit.square_sum = step.cost;
     is_shown = equations.linearize(fit.bundle);

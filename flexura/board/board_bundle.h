@@ -14,8 +14,14 @@ namespace flexura {
 struct BoardView {
   std::vector<std::vector<Eigen::Vector2d>>
       pixels;  ///< For each camera, the pixels (u, v) of the board's points, in the board's order, px; empty
-               ///< if the camera did not see the board.
+               ///< if the camera did not see the board. Points that it did not see are NaN.
 };
+
+/// Returns whether a camera saw the point with this pixel.
+[[nodiscard]] inline bool is_seen(const Eigen::Vector2d& pixel) { return pixel.allFinite(); }
+
+/// Returns the number of points that a camera saw.
+[[nodiscard]] std::size_t seen_points(std::span<const Eigen::Vector2d> pixels);
 
 /// Unknowns of a bundle adjustment. A camera that never sees the board keeps its initial values.
 struct BoardBundle {
@@ -28,27 +34,28 @@ struct BoardBundle {
 /// Settings of a bundle adjustment.
 struct BundleConfig {
   bool cameras = true;   ///< Whether lenses and camera poses are fitted in addition to the boards.
-  int distortion = 5;    ///< Number of fitted distortion coefficients in the order k1, k2, p1, p2, k3; the
-                         ///< others keep their values.
+  int distortion = 5;    ///< Number of fitted distortion coefficients, in the order of the lens model; the
+                         ///< others keep their values. At most the model's number of coefficients.
   int most_steps = 100;  ///< Limit of BundleFit::steps.
   /// The fit ends when a step decreases the sum of squares by less than this fraction.
   double least_gain = 1e-12;
+  double exact = 1e-20;  ///< The fit also ends when the sum of squares per point is below this, px^2.
 };
 
 /// Result of a bundle adjustment.
 struct BundleFit {
   BoardBundle bundle;  ///< Fitted unknowns.
-  /// Whether the fit converged. It is false if no step decreased the sum of squares, or if the limit on steps
-  /// was reached.
+  /// Whether the fit converged. False if no step decreased the sum of squares, or if the limit on steps was
+  /// reached.
   bool is_converged = false;
   int steps = 0;             ///< Number of tried steps plus one for the first linearisation.
   double square_sum = 0;     ///< Sum of squared distances between observed and computed pixels, px^2.
   std::size_t points = 0;    ///< Number of observed pixels.
   std::size_t unknowns = 0;  ///< Number of unknowns of cameras and boards.
-  /// Information matrix of the cameras' unknowns for noise of 1 px, with the boards' unknowns eliminated. Its
-  /// inverse is the covariance. The first unknowns are the fitted intrinsics of each camera, in the order of
-  /// `intrinsics_count`. For each camera except the first, the small motion [v; w] of X_1C follows: p + v,
-  /// exp(w) R.
+  /// Information matrix of the cameras' unknowns for noise of 1 px, with the boards' unknowns eliminated. The
+  /// inverse of this matrix is the covariance. The first unknowns are the fitted intrinsics of each camera,
+  /// in the order of `intrinsics_count`. For each camera except the first, the small motion [v; w] of X_1C
+  /// follows: p + v, exp(w) R.
   Eigen::MatrixXd information;
 };
 

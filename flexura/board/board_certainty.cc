@@ -25,7 +25,16 @@ Eigen::Vector<double, intrinsics_count> intrinsics_effects(const Intrinsics& len
   }
   const double f = std::max(lens.fx, lens.fy), r = std::sqrt(q);
   Eigen::Vector<double, intrinsics_count> result;
-  result << a, b, 1, 1, f * r * q, f * r * q * q, 3 * f * q, 3 * f * q, f * r * q * q * q;
+  result.setOnes();
+  result.head<2>() << a, b;
+  const double first = f * r * q, second = first * q, third = second * q;
+  auto by_distortion = result.tail<static_cast<int>(Distortion::most)>();
+  if (lens.distortion.model() == LensModel::fisheye) {
+    by_distortion.head<4>() << first, second, third, third * q;
+  } else {
+    by_distortion.head<5>() << first, second, 3 * f * q, 3 * f * q, third;
+    if (lens.distortion.model() == LensModel::rational) by_distortion.tail<3>() << first, second, third;
+  }
   return result;
 }
 

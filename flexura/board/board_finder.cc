@@ -7,10 +7,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <utility>
 #include <vector>
 
 #include "flexura/board/board_beyond.h"
 #include "flexura/board/board_search.h"
+#include "flexura/board/fiducial_board.h"
 
 namespace flexura {
 namespace {
@@ -75,12 +77,19 @@ bool search_levels(const cv::Mat& picture, const BoardTarget& board, Corners& co
   observation.reason = "the picture does not contain a complete board of this size";
   // Of the reduced picture searched first.
   Corners unused;
-  if (board.pattern == BoardPattern::chessboard || search.find(pictures[first], unused)) return false;
-  const cv::Size other = search.other_grid();
-  if (other.width > 0)
-    observation.reason = fmt::format("the picture shows a grid of {}x{} circles, not of {}x{}", other.width,
-                                     other.height, board.columns, board.rows);
-  return is_found;
+  const bool is_chessboard = board.pattern == BoardPattern::chessboard;
+  if (!is_chessboard && search.find(pictures[first], unused)) return false;
+  cv::Size other = is_chessboard ? BoardSearch::other_chessboard(pictures[first]) : search.other_grid();
+  // Columns and rows of a chessboard are found in any order.
+  if (is_chessboard && (other.width < other.height) != (board.columns < board.rows))
+    std::swap(other.width, other.height);
+  const bool is_same =
+      (other == cv::Size(board.columns, board.rows)) || (other == cv::Size(board.rows, board.columns));
+  if (other.width > 0 && !is_same)
+    observation.reason = fmt::format("the picture shows a {} of {}x{} {}, not of {}x{}",
+                                     is_chessboard ? "chessboard" : "grid", other.width, other.height,
+                                     is_chessboard ? "inner corners" : "circles", board.columns, board.rows);
+  return false;
 }
 
 // Twice the signed area of the triangle a, b, c: positive for a rotation from u to v.
@@ -122,6 +131,7 @@ BoardObservation find_board(const Image<std::uint8_t>& gray, const BoardTarget& 
   // Equal bytes on every machine, whatever its number of processors. (Also, ThreadSanitizer cannot see into
   // the packaged library and reports its locks on this stack as races.)
   cv::setNumThreads(1);
+  if (board.has_markers()) return find_fiducial_board(gray, board);
   // OpenCV only reads it.
   const cv::Mat picture(gray.height(), gray.width(), CV_8U, const_cast<std::uint8_t*>(gray.values().data()));
   Corners corners;

@@ -125,5 +125,37 @@ TEST(BoardTarget, CannotTellItsFirstPointWhereItLooksTheSameUpsideDown) {
       (BoardTarget{.pattern = BoardPattern::asymmetric_circles, .columns = 4, .rows = 11}.is_ambiguous()));
 }
 
+// The outer squares touch ground as dark as they are.
+TEST(BoardFinder, FindsChessboardsWithoutABrightBorder) {
+  TestRandom random(9);
+  const BoardTarget board{.columns = 7, .rows = 4};
+  for (int sample = 0; sample < 4; ++sample) {
+    const Pose X_CB = random_board(random, board, 0.35, 0.4, 0.05);
+    Image<std::uint8_t> picture = board_picture(board, Lens(lens_numbers), X_CB, width, height);
+    const Lens lens(lens_numbers);
+    const Pose X_BC = X_CB.inverse();
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        const Eigen::Vector3d ray = X_BC.rotation * lens.unproject({u, v})->homogeneous();
+        const Eigen::Vector3d at = (X_BC.position - X_BC.position.z() / ray.z() * ray) / board.square;
+        const bool is_on = at.x() > -1 && at.y() > -1 && at.x() < board.columns && at.y() < board.rows;
+        if (!is_on) picture.at(u, v) = 30;
+      }
+    }
+    const BoardObservation found = find_board(picture, board);
+    ASSERT_TRUE(found.is_found()) << sample << found.reason;
+    EXPECT_LT(error(found, board, X_CB), 0.1) << sample;
+  }
+}
+
+TEST(BoardFinder, NamesTheNumbersOfAnotherChessboard) {
+  TestRandom random(10);
+  const BoardTarget board{.columns = 7, .rows = 4};
+  const Pose X_CB = random_board(random, board, 0.35, 0.3, 0.02);
+  const auto picture = board_picture(board, Lens(lens_numbers), X_CB, width, height);
+  EXPECT_EQ(find_board(picture, {.columns = 8, .rows = 5}).reason,
+            "the picture shows a chessboard of 7x4 inner corners, not of 8x5");
+}
+
 }  // namespace
 }  // namespace flexura

@@ -29,8 +29,8 @@ struct OrderChoice {
 };
 
 /// Returns the choices of orders, the most consistent first. The pose from each view and order is a
-/// hypothesis. It determines the orders in all other views. `orders` has the orders in which the board looks
-/// the same, the board's own order first. Empty if there is no common view.
+/// hypothesis. The hypothesis determines the orders in all other views. `orders` has the orders in which the
+/// board looks the same, the board's own order first. Empty if there is no common view.
 [[nodiscard]] std::vector<OrderChoice> order_choices(std::span<const Eigen::Vector2d> points,
                                                      const CameraAlone& first, const CameraAlone& other,
                                                      std::span<const PointOrder> orders);

@@ -117,7 +117,7 @@ TEST(BoardOrder, RefusesWhenTwoOrdersFit) {
     const IntrinsicsConfig config{.distortion = 0, .orders = target.equal_orders()};
     const IntrinsicsFit fit = fit_intrinsics(points, views, two_sizes, config);
     EXPECT_FALSE(fit.is_found);
-    EXPECT_THAT(fit.reason, HasSubstr("camera 2: the board looks the same upside down, and its points fit in "
+    EXPECT_THAT(fit.reason, HasSubstr("camera 2: the board looks the same upside down: its points fit in "
                                       "two orders"));
   });
 }

@@ -155,8 +155,22 @@ bool BoardSearch::find_corners(const cv::Mat& picture, Points& points) {
   // In clutter the search by sectors is faster.
   if (spots > most_spots) return cv::findChessboardCornersSB(searched, size, points, 0);
   work_ += work_per_pair * static_cast<double>(spots * spots);
-  return cv::findChessboardCorners(searched, size, points,
-                                   cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
+  if (cv::findChessboardCorners(searched, size, points,
+                                cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE))
+    return true;
+  // The search of squares needs a bright border around the board.
+  if (static_cast<double>(picture.total()) > first_search_pixels) return false;
+  work_ += static_cast<double>(picture.total());
+  return cv::findChessboardCornersSB(picture, size, points, 0);
+}
+
+cv::Size BoardSearch::other_chessboard(const cv::Mat& picture) {
+  constexpr int least = 3;
+  Points points;
+  cv::Mat kinds;  // One per corner.
+  if (!cv::findChessboardCornersSB(picture, {least, least}, points, cv::CALIB_CB_LARGER, kinds))
+    return {0, 0};
+  return kinds.size();
 }
 
 bool BoardSearch::find_circles(const cv::Mat& picture, Points& points) {

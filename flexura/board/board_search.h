@@ -27,6 +27,9 @@ class BoardSearch {
   /// Returns the numbers of columns and rows of a grid of circles in the last picture that find() searched;
   /// (0, 0) if there is none, and for chessboards.
   [[nodiscard]] cv::Size other_grid() const;
+  /// Returns the numbers of columns and rows of inner corners of a whole chessboard in a picture; (0, 0) if
+  /// there is none.
+  [[nodiscard]] static cv::Size other_chessboard(const cv::Mat& picture);
 
   /// Returns the work done by find() so far: pixels, plus 40 for each pair of dark or bright spots.
   [[nodiscard]] double work() const { return work_; }

@@ -82,7 +82,13 @@ std::optional<Vector2d> principal_point(std::span<const Matrix3d> homographies, 
 
 }  // namespace
 
-std::optional<Matrix3d> board_homography(std::span<const Vector2d> points, std::span<const Vector2d> pixels) {
+std::optional<Matrix3d> board_homography(std::span<const Vector2d> all_points,
+                                         std::span<const Vector2d> all_pixels) {
+  std::vector<Vector2d> points, pixels;
+  for (std::size_t i = 0; i < all_pixels.size(); ++i)
+    if (all_pixels[i].allFinite()) points.push_back(all_points[i]), pixels.push_back(all_pixels[i]);
+  constexpr std::size_t least = 4;
+  if (points.size() < least) return std::nullopt;
   const Matrix3d from = normalization(points), to = normalization(pixels);
   Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -99,7 +105,7 @@ std::optional<Matrix3d> board_homography(std::span<const Vector2d> points, std::
   normalized << h.head<3>().transpose(), h.segment<3>(3).transpose(), h.tail<3>().transpose();
   Matrix3d H = to.inverse() * normalized * from;
   H /= H.norm();
-  // The board's first point is in front of the camera.
+  // The first point is in front of the camera.
   if (H.row(2).dot(points.front().homogeneous()) < 0) H = -H;
   if (!H.allFinite()) return std::nullopt;
   return H;
@@ -132,6 +138,10 @@ std::optional<Pose> start_pose(const Lens& lens, std::span<const Vector2d> point
                                std::span<const Vector2d> pixels) {
   std::vector<Vector2d> normalized;
   for (const Vector2d& pixel : pixels) {
+    if (!pixel.allFinite()) {
+      normalized.push_back(pixel);
+      continue;
+    }
     const auto direction = lens.unproject(pixel);
     if (!direction) return std::nullopt;
     normalized.push_back(*direction);

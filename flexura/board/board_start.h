@@ -11,7 +11,8 @@ namespace flexura {
 
 /// Returns the homography H from a board's plane to an image: pixel ~ H (x, y, 1). H has Frobenius norm 1.
 /// Uses the direct linear transformation with normalized points (R. Hartley, "In defence of the eight-point
-/// algorithm", 1997). Needs at least four points and equally many pixels; empty if the points are collinear.
+/// algorithm", 1997). Needs equally many pixels. Pixels that are NaN are not used. Empty for fewer than four
+/// others, and if their points are collinear.
 [[nodiscard]] std::optional<Eigen::Matrix3d> board_homography(std::span<const Eigen::Vector2d> points,
                                                               std::span<const Eigen::Vector2d> pixels);
 

@@ -10,12 +10,23 @@
 namespace flexura {
 
 const std::vector<std::string>& names_of(const BoardPattern*) {
-  static const std::vector<std::string> names = {"chessboard", "circles", "asymmetric-circles"};
+  static const std::vector<std::string> names = {"chessboard", "circles", "asymmetric-circles", "charuco",
+                                                 "apriltags"};
   return names;
 }
 
 std::vector<Eigen::Vector2d> BoardTarget::points() const {
   std::vector<Eigen::Vector2d> points;
+  if (pattern == BoardPattern::apriltags) {
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        const Eigen::Vector2d corner(square * column, square * row);
+        for (const Eigen::Vector2d& step : {Eigen::Vector2d(0, 0), {1, 0}, {1, 1}, {0, 1}})
+          points.emplace_back(corner + marker * step);
+      }
+    }
+    return points;
+  }
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const int across = pattern == BoardPattern::asymmetric_circles ? 2 * column + row % 2 : column;
@@ -26,7 +37,8 @@ std::vector<Eigen::Vector2d> BoardTarget::points() const {
 }
 
 std::vector<std::vector<std::size_t>> BoardTarget::equal_orders() const {
-  const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) *
+                     (pattern == BoardPattern::apriltags ? 4 : 1);
   std::vector<std::vector<std::size_t>> orders(1, std::vector<std::size_t>(count));
   std::iota(orders[0].begin(), orders[0].end(), std::size_t{0});
   if (!is_ambiguous()) return orders;
@@ -49,8 +61,17 @@ bool BoardTarget::is_ambiguous() const {
       return true;
     case BoardPattern::asymmetric_circles:
       return rows % 2 == 0;
+    case BoardPattern::charuco:
+    case BoardPattern::apriltags:
+      return false;
   }
   return true;
+}
+
+int BoardTarget::markers() const {
+  if (pattern == BoardPattern::apriltags) return columns * rows;
+  // Half of the squares, less the corner if it is black.
+  return pattern == BoardPattern::charuco ? (columns + 1) * (rows + 1) / 2 : 0;
 }
 
 }  // namespace flexura

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -40,11 +41,11 @@ constexpr const char* untilted =
 constexpr double best_noise = 0.05;  // px, of the best pictures.
 
 // Undetermined unknowns diverge although the fit explains the views.
-std::string why_not_converged(const BundleFit& fit, const LensMisfit& misfit, int distortion) {
+std::string why_not_converged(const BundleFit& fit, const LensMisfit& misfit, const FittedLens& lens) {
   constexpr double good = 2;  // px
   const bool is_explained = fit.points > 0 && rms_of(fit.square_sum, fit.points) < good;
   if (is_explained) return untilted;
-  return misfit.is_systematic() ? misfit.reason(distortion) : "no lens explains the views";
+  return misfit.is_systematic() ? misfit.reason(lens) : "no lens of this model fits the views";
 }
 
 bool is_seen_only_by(std::size_t camera, const BoardView& view) {
@@ -57,7 +58,11 @@ class Calibration {
  public:
   Calibration(std::span<const Vector2d> points, std::span<const BoardView> views, std::span<const Size> sizes,
               const IntrinsicsConfig& config)
-      : points_(points), views_(views), sizes_(sizes), config_(config) {
+      : points_(points),
+        views_(views),
+        sizes_(sizes),
+        config_(config),
+        lens_{config.model, config.distortion.value_or(static_cast<int>(Distortion::size_of(config.model)))} {
     if (config_.orders.empty()) {
       config_.orders.emplace_back(points.size());
       std::iota(config_.orders[0].begin(), config_.orders[0].end(), std::size_t{0});
@@ -82,7 +87,7 @@ class Calibration {
     const BundleFit fit = fit_bundle(points_, fitted_, start, bundle_config(1e-12));
     if (std::string reason = why_apart(fit); !reason.empty()) return fail(std::move(reason));
     if (!fit.is_converged)
-      return fail(why_not_converged(fit, worst_misfit(points_, fitted_, fit.bundle), config_.distortion));
+      return fail(why_not_converged(fit, worst_misfit(points_, fitted_, fit.bundle), lens_));
     if (std::string reason = why_ambiguous(fit); !reason.empty()) return fail(std::move(reason));
     take(fit);
     report_views();
@@ -100,15 +105,21 @@ class Calibration {
         if (!pixels.empty() && pixels.size() != points_.size())
           throw std::invalid_argument("the number of points in a view differs from that of the board");
     }
-    if (config_.distortion < 0 || config_.distortion > 5)
-      throw std::invalid_argument("the number of estimated distortion coefficients must be 0 to 5");
+    if (lens_.distortion < 0 || lens_.distortion > static_cast<int>(Distortion::size_of(lens_.model)))
+      throw std::invalid_argument(
+          fmt::format("the number of estimated distortion coefficients must be 0 to {}",
+                      Distortion::size_of(lens_.model)));
     for (const PointOrder& order : config_.orders)
       if (order.size() != points_.size())
         throw std::invalid_argument("an order of the board's points has a wrong number of points");
   }
 
   [[nodiscard]] BundleConfig bundle_config(double least_gain) const {
-    return {.distortion = config_.distortion, .least_gain = least_gain};
+    BundleConfig config{.distortion = lens_.distortion, .least_gain = least_gain};
+    if (lens_.model != LensModel::rational) return config;
+    // Its coefficients make up for each other, so that the minimum is flat.
+    config.most_steps = 500, config.least_gain = std::max(1e-8, least_gain), config.exact = 1e-8;
+    return config;
   }
   [[nodiscard]] std::string camera_text(std::size_t camera) const {
     return sizes_.size() == 1 ? "" : fmt::format("camera {}: ", camera + 1);
@@ -122,15 +133,16 @@ class Calibration {
     constexpr double start_gain = 1e-7;  // The joint fit continues from there.
     std::vector<CameraAlone> alone;
     for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
-      alone.push_back(fit_alone(points_, fitted_, camera, sizes_[camera], bundle_config(start_gain)));
+      alone.push_back(
+          fit_alone(points_, fitted_, camera, sizes_[camera], lens_.model, bundle_config(start_gain)));
       const CameraAlone& own = alone.back();
       if (own.views.size() < 2) {
         result_.reason = camera_text(camera) +
                          fmt::format("{} to fit: expected at least two views, from different directions",
                                      own.views.empty() ? "no view of the board" : "one view of the board");
       } else if (!own.fit.is_converged) {
-        result_.reason = camera_text(camera) +
-                         why_not_converged(own.fit, misfit_of_alone(own, camera), config_.distortion);
+        result_.reason =
+            camera_text(camera) + why_not_converged(own.fit, misfit_of_alone(own, camera), lens_);
       }
       if (!result_.reason.empty()) return false;
       start.lenses.push_back(own.fit.bundle.lenses.front());
@@ -209,8 +221,9 @@ class Calibration {
       const double second_rms = rms_of(second.square_sum, second.points);
       if (second.points == 0 || second_rms > clearly_worse * std::max(rms, best_noise)) continue;
       return fmt::format(
-          "{}the board looks the same upside down, and its points fit in two orders, to {:.2g} and {:.2g} "
-          "px: expected more views with the board at other places and tilts, or a board with one even and "
+          "{}the board looks the same upside down: its points fit in two orders, with residuals of {:.2g} "
+          "and {:.2g} px: expected more views with the board at other places and tilts, or a board with one "
+          "even and "
           "one odd number of corners",
           camera_text(doubt.camera), rms, second_rms);
     }
@@ -235,11 +248,12 @@ class Calibration {
       if (i == 0 || own.turn > spread.turn) spread = own, camera = i + 1;
     }
     return fmt::format(
-        "{}its pictures do not match those of camera 1: the cameras fit to {} px alone and {} together, "
-        "and view {} gives a pose that differs by {:.0f} degrees and {} m from most views: expected pictures "
+        "{}its pictures do not match those of camera 1: the residuals are {} px for each camera alone and {} "
+        "for both together, and view {} gives a pose that differs by {:.0f} degrees and {} m from most "
+        "views: expected pictures "
         "taken at the same time, in the same order, by cameras fixed to each other",
         camera_text(camera), fmt::join(rms_alone, " and "),
-        fit.points > 0 ? fmt::format("to {:.3g} px", rms) : "not at all", numbers_[spread.view] + 1,
+        fit.points > 0 ? fmt::format("{:.3g} px", rms) : "unknown", numbers_[spread.view] + 1,
         spread.turn / degree, bounded_text(spread.distance, 100));
   }
 
@@ -251,7 +265,7 @@ class Calibration {
     const double freedom = 2 * static_cast<double>(fit.points) - static_cast<double>(fit.unknowns);
     result_.noise = freedom > 0 ? std::sqrt(fit.square_sum / freedom) : 0;
     const auto cameras = static_cast<Index>(sizes_.size());
-    const Index lens_size = 4 + config_.distortion;
+    const Index lens_size = 4 + lens_.distortion;
     VectorXd scale(fit.information.rows());
     for (Index i = 0; i < cameras; ++i) {
       const auto camera = static_cast<std::size_t>(i);
@@ -279,8 +293,7 @@ class Calibration {
   }
 
   [[nodiscard]] Index pose_at(std::size_t camera) const {
-    return static_cast<Index>(sizes_.size()) * (4 + config_.distortion) +
-           6 * (static_cast<Index>(camera) - 1);
+    return static_cast<Index>(sizes_.size()) * (4 + lens_.distortion) + 6 * (static_cast<Index>(camera) - 1);
   }
 
   void report_views() {
@@ -293,8 +306,9 @@ class Calibration {
       for (std::size_t i = 0; i < fitted_.size(); ++i) {
         if (fitted_[i].pixels[camera].empty()) continue;
         const double part = square_sum(points_, fitted_[i], bundle_, camera, bundle_.boards[i]).value_or(0);
-        own.view_rms[numbers_[i]] = rms_of(part, points_.size());
-        sum += part, count += points_.size();
+        const std::size_t seen = seen_points(fitted_[i].pixels[camera]);
+        own.view_rms[numbers_[i]] = rms_of(part, seen);
+        sum += part, count += seen;
       }
       own.rms = rms_of(sum, count);
       own.misfit = lens_misfit(points_, fitted_, bundle_, camera);
@@ -324,7 +338,8 @@ class Calibration {
       for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
         if (views_[view].pixels[camera].empty()) continue;
         const auto part = square_sum(points_, own.front(), bundle_, camera, fit.bundle.boards.front());
-        if (part) result_.cameras[camera].view_rms[view] = rms_of(*part, points_.size());
+        if (part)
+          result_.cameras[camera].view_rms[view] = rms_of(*part, seen_points(views_[view].pixels[camera]));
       }
     }
     if (count > 0) result_.held_out_rms = rms_of(sum, count);
@@ -333,7 +348,7 @@ class Calibration {
   [[nodiscard]] std::vector<Vector2d> seen_by(std::size_t camera) const {
     std::vector<Vector2d> all;
     for (const BoardView& view : fitted_)
-      all.insert(all.end(), view.pixels[camera].begin(), view.pixels[camera].end());
+      std::ranges::copy_if(view.pixels[camera], std::back_inserter(all), is_seen);
     return all;
   }
 
@@ -343,7 +358,7 @@ class Calibration {
       constexpr double useless = 2;  // px
       const LensMisfit& misfit = result_.cameras[camera].misfit;
       if (misfit.is_systematic() && misfit.rms > useless)
-        result_.reason = camera_text(camera) + misfit.reason(config_.distortion);
+        result_.reason = camera_text(camera) + misfit.reason(lens_);
       const auto& undetermined = result_.cameras[camera].undetermined;
       if (result_.reason.empty() && !undetermined.empty() && undetermined.front() < 4)
         result_.reason = camera_text(camera) + untilted;
@@ -362,7 +377,7 @@ class Calibration {
     const auto seen = intrinsics_effects(own.lens, seen_by(camera)),
                corners = intrinsics_effects(own.lens, image_corners(width, height));
     const bool are_corners_known = grown * own.corner_sigma <= largest;
-    for (int i = 0; i < 4 + config_.distortion; ++i) {
+    for (int i = 0; i < 4 + lens_.distortion; ++i) {
       const double sigma = grown * own.sigma(i);
       const bool is_determined =
           seen[i] * sigma <= largest && (are_corners_known || corners[i] * sigma <= largest);
@@ -374,6 +389,7 @@ class Calibration {
   std::span<const BoardView> views_;
   std::span<const Size> sizes_;
   IntrinsicsConfig config_;
+  FittedLens lens_;
   std::vector<std::size_t> numbers_;  // Of the fitted views.
   std::vector<BoardView> fitted_;
   std::vector<std::vector<CameraStep>> steps_;  // Of each camera except the first.

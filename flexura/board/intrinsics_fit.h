@@ -17,8 +17,10 @@ namespace flexura {
 
 /// Settings of a camera calibration from views of a board.
 struct IntrinsicsConfig {
-  /// Number of estimated distortion coefficients in the order k1, k2, p1, p2, k3; the others are 0.
-  int distortion = 5;
+  LensModel model = LensModel::brown;  ///< Lens model of all cameras.
+  /// Number of estimated distortion coefficients, in the order of the lens model; the others are 0. Default:
+  /// all coefficients of the model.
+  std::optional<int> distortion = {};
   /// N = hold_out: every Nth view is excluded from the fit and only predicted; 0: all views are fitted.
   int hold_out = 0;
   /// Orders of the board's points in which the board looks the same (BoardTarget::equal_orders()); empty: one
@@ -41,8 +43,8 @@ struct CameraFit {
   /// Root mean square of the distances between observed and computed pixels in each view, including held-out
   /// views, px. Missing for views in which the camera did not see the board.
   std::vector<std::optional<double>> view_rms;
-  /// Standard deviation of the image position of a direction, px, in the worst corner of the image. It is
-  /// large if no board was near the corners.
+  /// Standard deviation of the image position of a direction, px, in the worst corner of the image. The value
+  /// is large if no board was near the corners.
   double corner_sigma = 0;
   /// Indices of undetermined intrinsics. An intrinsic parameter is undetermined if a change by one standard
   /// deviation moves observed points by more than 1 % of the image's diagonal. If corner_sigma exceeds this
@@ -83,7 +85,7 @@ struct IntrinsicsFit {
 /// and least squares. Then fits all cameras together with their relative poses. Each camera needs at least
 /// two views in which the board is not parallel. Each camera except the first also needs a view in which the
 /// first camera saw the board. Throws std::invalid_argument for views with a wrong number of cameras or
-/// points, and unless 0 to 5 distortion coefficients are estimated.
+/// points, and for a number of distortion coefficients that the lens model does not have.
 [[nodiscard]] IntrinsicsFit fit_intrinsics(std::span<const Eigen::Vector2d> points,
                                            std::span<const BoardView> views,
                                            std::span<const std::array<int, 2>> sizes,

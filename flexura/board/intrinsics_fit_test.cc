@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <stdexcept>
@@ -63,8 +64,10 @@ BoardBundle random_pair(TestRandom& random, int views) {
   return truth;
 }
 
-Eigen::Vector<double, intrinsics_count> numbers(const Intrinsics& lens) {
-  Eigen::Vector<double, intrinsics_count> result;
+constexpr int brown_count = 9;  // Parameters of the lens model brown.
+
+Eigen::Vector<double, brown_count> numbers(const Intrinsics& lens) {
+  Eigen::Vector<double, brown_count> result;
   result << lens.fx, lens.fy, lens.cx, lens.cy,
       Eigen::Map<const Eigen::Vector<double, 5>>(lens.distortion.data());
   return result;
@@ -109,7 +112,7 @@ TEST(IntrinsicsFit, IsAsFarOffAsItsCovarianceSays) {
   constexpr int cases = 80 / one_case_of;
   constexpr double sigma = 0.15;
   double lens_sum = 0, pose_sum = 0;
-  Eigen::Vector<double, intrinsics_count> parts = Eigen::Vector<double, intrinsics_count>::Zero();
+  Eigen::Vector<double, brown_count> parts = Eigen::Vector<double, brown_count>::Zero();
   for (int i = 0; i < cases; ++i) {
     TestRandom random(case_seed(i));
     const BoardBundle truth = random_pair(random, 8);
@@ -117,19 +120,21 @@ TEST(IntrinsicsFit, IsAsFarOffAsItsCovarianceSays) {
     ASSERT_TRUE(fit.is_found) << "seed " << case_seed(i) << ": " << fit.reason;
     EXPECT_NEAR(fit.noise, sigma, 0.1 * sigma);
     for (std::size_t camera = 0; camera < 2; ++camera) {
-      const Eigen::Vector<double, intrinsics_count> error =
+      const Eigen::Vector<double, brown_count> error =
           numbers(fit.cameras[camera].lens) - numbers(truth.lenses[camera]);
-      if (camera == 0) lens_sum += mahalanobis_square(fit.cameras[camera].covariance, error);
       if (camera == 0)
-        for (int j = 0; j < intrinsics_count; ++j)
+        lens_sum += mahalanobis_square(
+            fit.cameras[camera].covariance.topLeftCorner<brown_count, brown_count>(), error);
+      if (camera == 0)
+        for (int j = 0; j < brown_count; ++j)
           parts[j] += std::pow(error[j] / fit.cameras[camera].sigma(j), 2);
     }
     const Eigen::Vector<double, 6> error = motion(fit.poses[1], truth.cameras[1]);
     pose_sum += mahalanobis_square(fit.pose_covariance[1], error);
   }
-  expect_chi_square(lens_sum, cases * intrinsics_count);
+  expect_chi_square(lens_sum, cases * brown_count);
   expect_chi_square(pose_sum, cases * 6);
-  for (int j = 0; j < intrinsics_count; ++j) expect_chi_square(parts[j], cases);
+  for (int j = 0; j < brown_count; ++j) expect_chi_square(parts[j], cases);
 }
 
 // All pixels of a bundle after a step of the cameras' and boards' unknowns.
@@ -159,7 +164,7 @@ TEST(BoardBundle, HasTheDerivativesThatDifferencesHave) {
   const BoardBundle truth = random_pair(random, 2);
   const auto views = seen_boards(truth, points, 0, random);
   const BundleFit fit = fit_bundle(points, views, truth, {.most_steps = 1});
-  const Eigen::Index cameras = 2 * intrinsics_count + 6, all = cameras + 12;
+  const Eigen::Index cameras = 2 * brown_count + 6, all = cameras + 12;
   const auto numeric = numerical_jacobian([&](const Eigen::VectorXd& step) { return pixels_of(truth, step); },
                                           Eigen::VectorXd::Zero(all), 0.01);
   const Eigen::MatrixXd normal = numeric.value.transpose() * numeric.value;
@@ -214,9 +219,9 @@ TEST(IntrinsicsFit, IsOpenCVs) {
     EXPECT_NEAR(fit.cameras[0].lens.cy, K.at<double>(1, 2), 0.02 * fit.cameras[0].sigma(3));
     // OpenCV divides by the points minus the unknowns, not by their coordinates (two per point) minus the
     // unknowns.
-    const double unknowns = intrinsics_count + 6.0 * 8, count = 8.0 * static_cast<double>(points.size());
+    const double unknowns = brown_count + 6.0 * 8, count = 8.0 * static_cast<double>(points.size());
     const double ratio = std::sqrt((count - unknowns) / (2 * count - unknowns));
-    for (int i = 0; i < intrinsics_count; ++i)
+    for (int i = 0; i < brown_count; ++i)
       EXPECT_NEAR(fit.cameras[0].sigma(i) / sigmas.at<double>(i), ratio, 1e-4) << i;
   });
 }
@@ -297,7 +302,8 @@ TEST(IntrinsicsFit, KnowsThatPicturesDoNotBelongTogether) {
       const IntrinsicsFit fit = fit_intrinsics(points, wrong, two_sizes);
       EXPECT_FALSE(fit.is_found);
       EXPECT_THAT(fit.reason, HasSubstr("camera 2: its pictures do not match those of camera 1"));
-      EXPECT_THAT(fit.reason, ContainsRegex("0\\.1[0-9]* px alone and to [0-9.]+ px together"));
+      EXPECT_THAT(fit.reason,
+                  ContainsRegex("0\\.1[0-9]* px for each camera alone and [0-9.]+ px for both together"));
     }
     EXPECT_THAT(fit_intrinsics(points, one, two_sizes).reason,
                 HasSubstr("view 6 gives a pose that differs by"));
@@ -327,6 +333,36 @@ TEST(IntrinsicsFit, KeepsCoefficientsThatAreNotEstimatedAtZero) {
       ElementsAre(0, 0, 0));
   EXPECT_EQ(fit.cameras[0].sigma(8), 0);
   EXPECT_GT(fit.cameras[0].sigma(5), 0);
+}
+
+// Points that are not seen (NaN) are left out, whichever they are.
+TEST(IntrinsicsFit, UsesTheSeenPointsOfViews) {
+  TestRandom random(31);
+  const BoardTarget board{.columns = 9, .rows = 6, .square = 0.03};
+  const auto points = board.points();
+  BoardBundle truth{
+      {{.fx = 610, .fy = 612, .cx = 322, .cy = 238, .distortion = {-0.2, 0.05, 0, 0, 0}}}, {Pose{}}, {}};
+  for (int i = 0; i < 12; ++i) truth.boards.push_back(random_board(random, board, 0.6));
+  auto views = seen_boards(truth, points, 0, random);
+  std::size_t seen = 0;
+  for (BoardView& view : views) {
+    // A half-plane of the board is outside the picture.
+    const double angle = random.uniform(0, 6.28);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector2d from_middle = points[i] - Eigen::Vector2d(0.12, 0.075);
+      if (from_middle.dot(Eigen::Vector2d(std::cos(angle), std::sin(angle))) > 0.01)
+        view.pixels[0][i].setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+    seen += seen_points(view.pixels[0]);
+  }
+  const IntrinsicsFit fit = fit_intrinsics(points, views, one_size, {.distortion = 2});
+  ASSERT_TRUE(fit.is_found) << fit.reason;
+  EXPECT_EQ(fit.points, seen);
+  EXPECT_LT(seen, 12 * points.size());
+  EXPECT_NEAR(fit.cameras[0].lens.fx, 610, 1e-4);
+  EXPECT_NEAR(fit.cameras[0].lens.cy, 238, 1e-4);
+  EXPECT_NEAR(fit.cameras[0].lens.distortion[0], -0.2, 1e-6);
+  EXPECT_LT(fit.rms, 1e-6);
 }
 
 }  // namespace

@@ -17,15 +17,17 @@ bool LensMisfit::is_systematic() const {
   return rms > visible && likeness > 0.5;
 }
 
-std::string LensMisfit::reason(int distortion) const {
+std::string LensMisfit::reason(const FittedLens& lens) const {
   // A bent board leaves less than this.
   constexpr double surely_radial = 0.1;
   return fmt::format(
-      "the lens model does not fit{}: the residuals of {:.3g} px are alike in neighbouring points: expected "
-      "{}a "
-      "lens with a smaller field of view (no fisheye lens)",
+      "the lens model does not fit{}: the residuals of {:.3g} px are correlated between neighbouring points: "
+      "expected {}another lens model than {}",
       radial_share > surely_radial ? "" : ", or the board is not flat", rms,
-      distortion < 5 ? "more coefficients of distortion, or " : "");
+      lens.distortion < static_cast<int>(Distortion::size_of(lens.model))
+          ? "more coefficients of distortion, or "
+          : "",
+      name_of(lens.model));
 }
 
 LensMisfit lens_misfit(std::span<const Vector2d> points, std::span<const BoardView> views,
@@ -39,17 +41,22 @@ LensMisfit lens_misfit(std::span<const Vector2d> points, std::span<const BoardVi
     if (pixels.empty()) continue;
     const Pose X_CB = bundle.cameras[camera].inverse() * bundle.boards[view];
     Vector2d last = Vector2d::Zero();
+    bool has_last = false;
     for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!is_seen(pixels[i])) {
+        has_last = false;
+        continue;
+      }
       const auto pixel = lens.project(X_CB.position + X_CB.rotation.leftCols<2>() * points[i]);
       if (!pixel) break;
       const Vector2d residual = pixels[i] - *pixel, outward = pixels[i] - middle;
       squares += residual.squaredNorm();
       radial.emplace_back(outward.norm(), residual.dot(outward) / std::max(outward.norm(), 1e-9));
-      if (i > 0) {
+      if (has_last) {
         products += residual.dot(last);
         neighbours += 0.5 * (residual.squaredNorm() + last.squaredNorm());
       }
-      last = residual;
+      last = residual, has_last = true;
     }
   }
   LensMisfit misfit;

@@ -9,6 +9,12 @@
 
 namespace flexura {
 
+/// Lens model of a fit, and the number of its fitted coefficients.
+struct FittedLens {
+  LensModel model = LensModel::brown;
+  int distortion = 5;
+};
+
 /// Structure of a camera's residuals. A lens model that does not fit leaves residuals that are alike in
 /// neighbouring points and may depend on the distance from the principal point.
 struct LensMisfit {
@@ -16,15 +22,14 @@ struct LensMisfit {
   /// Correlation of the residuals of neighbouring points: 0 for noise, 1 for smooth residuals.
   double likeness = 0;
   /// Share of the residuals' sum of squares that a radial displacement explains, which depends only on the
-  /// distance from the principal point. It is near 0 for noise.
+  /// distance from the principal point. The share is near 0 for noise.
   double radial_share = 0;
 
   /// Returns whether the residuals are over 0.5 px and alike in neighbouring points, as those of a wrong lens
   /// model or of a board that is not flat.
   [[nodiscard]] bool is_systematic() const;
-  /// Returns the reason to state if is_systematic() is true. `distortion` is the number of fitted
-  /// coefficients.
-  [[nodiscard]] std::string reason(int distortion) const;
+  /// Returns the reason to state if is_systematic() is true.
+  [[nodiscard]] std::string reason(const FittedLens& lens) const;
 };
 
 /// Computes the structure of a camera's residuals in the views with a pose in `bundle`. Views in which the
@@ -33,7 +38,7 @@ struct LensMisfit {
                                      std::span<const BoardView> views, const BoardBundle& bundle,
                                      std::size_t camera);
 
-/// Returns the structure of the residuals of the camera with the largest ones.
+/// Returns the structure of the residuals of the camera whose residuals are largest.
 [[nodiscard]] LensMisfit worst_misfit(std::span<const Eigen::Vector2d> points,
                                       std::span<const BoardView> views, const BoardBundle& bundle);
 

@@ -35,9 +35,9 @@ struct ArcPlan {
   std::array<double, 2> zoom = {1, 1};  ///< Lens positions of the ideal views.
 };
 
-/// Computes the plan for the modelled cameras and reports it to the watcher of `loop`. With
-/// `aims_at_centers`, each camera aims at the centre of its circle. Otherwise, both cameras aim at the middle
-/// of the space that the arcs occupy. If no plan is possible, returns the reason.
+/// Computes the plan for the modelled cameras and reports it to the watcher of `loop`. If `aims_at_centers`
+/// is true, each camera aims at the centre of its circle. Otherwise, both cameras aim at the middle of the
+/// space that the arcs occupy. If no plan is possible, returns the reason.
 [[nodiscard]] std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPlan& plan);
 
 }  // namespace flexura

@@ -18,7 +18,7 @@ class ArcsAsPrinted : public ArcsLoop {
     ArmPictureConfig picture = loop.config().picture;
     for (std::size_t i = 0; i < 2; ++i) {
       picture.white = loop.model(i).sensor.white();
-      finders_.emplace_back(picture);
+      finders_.emplace_back(picture, loop.config().cameras[i]);
     }
   }
 

@@ -25,7 +25,7 @@ RigPrior arcs_prior(RigPrior prior) {
   for (CameraPrior& camera : prior.cameras) {
     camera.pan_zero = camera.tilt_zero = camera.tilt_axis = camera.pupil = camera.pupil_shift = 0;
     camera.focal = camera.aspect = camera.zoom_row = 0;
-    camera.distortion = {0, 0, 0, 0, 0};
+    camera.distortion = {};
     camera.principal_point = 1;
   }
   return prior;

@@ -64,7 +64,7 @@ LookLoop::Error ArcsLoop::equalize_zooms() {
         const Image<std::uint8_t> bytes = eight_bits(*observed.frame.picture, loop_.model(i).sensor.white());
         seen = correlate_zoom(bytes.channels() == 1 ? bytes : gray_picture(bytes), plan_.pictures[i]);
         observed.seen.reason = seen.reason;
-        observed.values = {{"zoom over the ideal picture's", seen.ratio}, {"correlation", seen.peak}};
+        observed.values = {{"zoom relative to the ideal picture", seen.ratio}, {"correlation", seen.peak}};
       });
       if (error) return error;
       if (!seen.reason.empty()) return fmt::format("zoom of camera {}: {}", loop_.name(i), seen.reason);
@@ -77,7 +77,7 @@ LookLoop::Error ArcsLoop::equalize_zooms() {
         end = "at the resolution of the commands";
       else if (round == rounds)
         end = fmt::format(
-            "stopped after {} observations: the correlation hardly resolves smaller changes of the zoom",
+            "stopped after {} observations: the correlation cannot resolve smaller changes of the zoom",
             rounds);
       loop_.decide(i, "zoom", seen.ratio - 1, accepted, "share",
                    end.empty()
@@ -85,8 +85,8 @@ LookLoop::Error ArcsLoop::equalize_zooms() {
                        : fmt::format("the correlation is {:.3f}: {}", seen.peak, end));
       if (!end.empty() && off > accepted)
         loop_.result().notes.push_back(
-            fmt::format("zoom of camera {}: by the last correlation, the size differs by {:.2g} % from the "
-                        "ideal picture, the tolerance is {:.2g} %: {}",
+            fmt::format("zoom of camera {}: the last correlation gives a size error of {:.2g} % relative "
+                        "to the ideal picture (tolerance {:.2g} %): {}",
                         loop_.name(i), 100 * off, 100 * accepted, end));
       if (!end.empty()) break;
       if (auto moved = loop_.go(i, next)) return moved;

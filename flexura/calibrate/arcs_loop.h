@@ -10,10 +10,10 @@
 
 namespace flexura {
 
-/// Base class of calibrations with arcs of the arm (section 3.4). The arm bends into arcs in XOY and ZOY. The
-/// cameras take pictures and move until their pictures agree with those of the simulator. Then the zooms are
-/// equalised. Derived classes measure pictures, choose the moves of a camera, and decide when the camera
-/// needs no further move.
+/// Base class of calibrations with arcs of the arm (section 3.4 of the paper). The arm bends into arcs in XOY
+/// and ZOY. The cameras take pictures and move until their pictures agree with those of the simulator. Then
+/// the zooms are equalised. Derived classes measure pictures, choose the moves of a camera, and decide when
+/// the camera needs no further move.
 class ArcsLoop {
  public:
   explicit ArcsLoop(LookLoop& loop) : loop_(loop) {}
@@ -58,8 +58,8 @@ class ArcsLoop {
 /// Returns a well-posed version of the method: both cameras observe the markers and centerlines of both arcs.
 /// Each camera is commanded from its estimated to its ideal pose, until the remaining error is below the
 /// resolutions of commands and pictures. Then both cameras take a picture with a longer focal length, from
-/// which the principal points are estimated, and the loop continues. It is an error if pictures disagree by
-/// more than their standard deviations, or if a pose cannot be commanded.
+/// which the principal points are estimated, and the loop continues. The calibration reports an error if
+/// pictures disagree by more than their standard deviations, or if a pose cannot be commanded.
 [[nodiscard]] std::unique_ptr<ArcsLoop> arcs_corrected(LookLoop& loop);
 
 /// Returns the prior of a rig for the calibration with arcs, derived from the prior of the default

@@ -27,7 +27,7 @@ class ArmObserver : public RigObserver {
     for (const std::size_t i : config.cameras) {
       ArmPictureConfig picture = config.picture;
       picture.white = nominal.cameras.at(i).sensor.white();
-      pictures_.emplace_back(std::move(picture));
+      pictures_.emplace_back(std::move(picture), i);
       const CameraPrior& camera = prior.cameras.at(i);
       const double moved = camera.position / (vector(nominal.cameras[i].mount.position) - target).norm();
       pointing_prior_.sideways = std::max(pointing_prior_.sideways, std::hypot(camera.rotation, moved));

@@ -6,6 +6,7 @@
 
 #include "flexura/kinematics/spatial.h"
 #include "flexura/model/backbone.h"
+#include "flexura/vision/arm_scene.h"
 #include "flexura/vision/backbone_image.h"
 #include "flexura/vision/eight_bits.h"
 
@@ -47,7 +48,17 @@ std::vector<CurvePoint> spaced_points(const std::vector<AxisSample>& axis) {
   return points;
 }
 
+// Returns the finder's settings for a camera.
+ArmFinderConfig finder_config(const ArmPictureConfig& config, std::size_t camera) {
+  ArmFinderConfig finding;
+  if (camera < config.scenes.size()) finding.scene = config.scenes[camera];
+  return finding;
+}
+
 }  // namespace
+
+ArmPicture::ArmPicture(ArmPictureConfig config, std::size_t camera)
+    : config_(std::move(config)), finder_(finder_config(config_, camera)) {}
 
 MarkerPicture marker_picture(const Arm& arm, const ArmState& state, const std::vector<KnownMarker>& markers,
                              const View& view, const Arm& marked) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ namespace flexura {
 struct ArmPictureConfig {
   std::vector<KnownMarker> markers;  ///< Markers of the arm, ordered from base to tip.
   int white = 255;                   ///< Largest pixel value.
+  /// What separates the arm from its surroundings, by index of the camera in the rig; empty or null:
+  /// brightness alone.
+  std::vector<std::shared_ptr<const ArmScene>> scenes = {};
 };
 
 /// The measured arm in one picture, before its markers are identified.
@@ -66,7 +70,8 @@ struct SeenArm {
 /// Measures pictures of an arm. A result does not depend on earlier pictures.
 class ArmPicture {
  public:
-  explicit ArmPicture(ArmPictureConfig config) : config_(std::move(config)) {}
+  /// `camera`: index of the camera in the rig.
+  ArmPicture(ArmPictureConfig config, std::size_t camera);
 
   [[nodiscard]] ArmFigure look(const Picture& picture);
   /// Finds the arm, and identifies its markers by comparison with the expected scene.

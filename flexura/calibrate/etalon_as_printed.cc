@@ -142,8 +142,8 @@ class EtalonAsPrinted : public EtalonLoop {
     constexpr int most = 3;
     if (++turned_away_[i] > most)
       return fmt::format(
-          "horizontal positioning of camera {} cannot stop: the head turned the outer of two red axes out of "
-          "the picture, but both were visible again with the cylinder in the middle",
+          "horizontal positioning of camera {} cannot stop. The head turned the outer of two red axes out of "
+          "the picture, but both axes were visible again with the cylinder in the middle",
           loop_.name(i));
     const auto off = [&](double u) { return std::abs(u - counts_[i].middle); };
     const double outer = off(axes.front()) > off(axes.back()) ? axes.front() : axes.back();
@@ -179,7 +179,7 @@ class EtalonAsPrinted : public EtalonLoop {
     if (counts_[i].above != 0 || counts_[i].below != 0) return std::nullopt;
     return fmt::format(
         "vertical calibration of camera {} stops, but the cylinder touches the upper and the lower border of "
-        "the picture: its distances from both borders are zero and do not depend on the position",
+        "the picture. The distances from both borders are then zero and do not depend on the position",
         loop_.name(i));
   }
 

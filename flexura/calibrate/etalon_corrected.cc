@@ -35,7 +35,7 @@ class EtalonCorrected : public EtalonLoop {
         observed.values = {{"silhouette right of the middle, px", view.middle},
                            {"line right of the silhouette's middle, px", view.line},
                            {"silhouette below the middle, px", view.height},
-                           {"width above less below, px", view.taper},
+                           {"width above minus width below, px", view.taper},
                            {"width, px", view.width}};
       }
       observed.seen.reason = view.reason;

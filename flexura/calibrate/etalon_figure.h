@@ -25,9 +25,9 @@ enum class EtalonPart {
   red_line,
 };
 
-/// The half of a rim that bounds the silhouette. It is the nearer half if the end face is invisible, and the
-/// farther half if the end face is visible. The half changes when a camera passes the height of the rim. Then
-/// the derivative of the silhouette with respect to the camera jumps, because the two halves have different
+/// The half of a rim that bounds the silhouette. If the end face is invisible, this is the nearer half;
+/// otherwise the farther half. The half changes when a camera passes the height of the rim. Then the
+/// derivative of the silhouette with respect to the camera jumps, because the two halves have different
 /// distances.
 enum class RimHalf : std::uint8_t {
   seen,  ///< The half that bounds the silhouette, seen from the camera's position.
@@ -35,7 +35,8 @@ enum class RimHalf : std::uint8_t {
   far,
 };
 
-/// A picture point on the image of a part of the cylinder. Its position along this image is unknown.
+/// A picture point on the image of a part of the cylinder. The position of the point along this image is
+/// unknown.
 struct EtalonPoint {
   EtalonPart part = EtalonPart::left_side;
   /// Number of the red line: line 0 is towards +Z of the cylinder's frame E, line 1 towards +X, line 2
@@ -79,12 +80,12 @@ class EtalonFigure {
   /// Number of points of each rim in an outline.
   static constexpr std::size_t rim_points = 32;
   /// Returns the pixels of rim_points points on each of the two rims, evenly spaced, starting at the camera's
-  /// side. Their polygon approximates the outline of the cylinder within 0.005 of a rim's width. Returns
-  /// std::nullopt unless the whole cylinder is visible, at least `margin` px from the border.
+  /// side. The polygon through these pixels approximates the outline of the cylinder within 0.005 of a rim's
+  /// width. Returns std::nullopt unless the whole cylinder is visible, at least `margin` px from the border.
   [[nodiscard]] std::optional<std::array<Eigen::Vector2d, 2 * rim_points>> outline(const View& view,
                                                                                    double margin) const;
-  /// Returns the angle of a red line around the cylinder's axis, rad. It is measured to the right from the
-  /// direction to the camera.
+  /// Returns the angle of a red line around the cylinder's axis, rad. The angle is measured to the right from
+  /// the direction to the camera.
   [[nodiscard]] double bearing(std::size_t number, const Eigen::Vector3d& p_WC) const;
 
   /// Returns the midpoint of the cylinder's axis, in W, m.

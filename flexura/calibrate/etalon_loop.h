@@ -11,9 +11,9 @@
 
 namespace flexura {
 
-/// Base class of calibrations with the cylinder (section 3.4). Each camera is oriented and positioned
-/// horizontally, then vertically. Each of these motions nulls an offset in the picture. Then the zooms are
-/// equalised. Derived classes measure, choose the steps, and decide when an offset is small enough.
+/// Base class of calibrations with the cylinder (section 3.4 of the paper). Each camera is oriented and
+/// positioned horizontally, then vertically. Each of these motions nulls an offset in the picture. Then the
+/// zooms are equalised. Derived classes measure, choose the steps, and decide when an offset is small enough.
 class EtalonLoop {
  public:
   /// `is_printed`: steps have equal size, offsets are nulled one after the other, and zooms change as printed
@@ -45,7 +45,7 @@ class EtalonLoop {
   [[nodiscard]] virtual Error unmeasured(std::size_t /*i*/) const { return std::nullopt; }
   /// Returns the offsets of the last picture: horizontal orientation and positioning, then vertical.
   [[nodiscard]] virtual std::array<Offset, 4> offsets(std::size_t i) const = 0;
-  /// Turns the camera if the picture requires it before the offset can be nulled, and then sets `is_turned`.
+  /// If the offset cannot be nulled in the present picture, turns the camera and sets `is_turned`.
   [[nodiscard]] virtual Error prepare(std::size_t i, std::size_t offset, bool& is_turned) = 0;
   /// Nulls all offsets of a camera.
   [[nodiscard]] virtual Error align(std::size_t i) = 0;
@@ -67,15 +67,15 @@ class EtalonLoop {
   bool is_printed_;
 };
 
-/// Returns the method exactly as printed in the paper, including its errors (docs/calibration-paper.md). It
-/// counts pixels, and positioning uses a quantity that does not depend on the position. The test of the
-/// vertical calibration checks the quantity that was just nulled, and the zoom changes in the wrong
+/// Returns the method exactly as printed in the paper, including its errors (docs/calibration-paper.md). The
+/// method counts pixels, and positioning uses a quantity that does not depend on the position. The test of
+/// the vertical calibration checks the quantity that was just nulled, and the zoom changes in the wrong
 /// direction. The method reports loops that never end, and loops that diverge.
 [[nodiscard]] std::unique_ptr<EtalonLoop> etalon_as_printed(LookLoop& loop);
-/// Returns the corrected method. It measures borders with subpixel accuracy. Its steps shrink until all four
-/// offsets are within tolerance in one picture. It repeats this with the measured principal point, which is
-/// the fixed point of pictures with different focal lengths. Finally the heads move to those neighbouring
-/// positions for which the optical axes are most nearly orthogonal.
+/// Returns the corrected method. The method measures borders with subpixel accuracy. The steps shrink until
+/// all four offsets are within tolerance in one picture. Then the method repeats the steps with the measured
+/// principal point, the fixed point of pictures with different focal lengths. Finally the heads move to those
+/// neighbouring positions for which the optical axes are most nearly orthogonal.
 [[nodiscard]] std::unique_ptr<EtalonLoop> etalon_corrected(LookLoop& loop);
 
 }  // namespace flexura

@@ -30,8 +30,8 @@ void add(EtalonPart part, std::size_t number, const UprightLine& line, const Eta
     points.push_back({part, number, at(line, seen, share), std::max(least, of_fit)});
 }
 
-// Bearing of a line on the cylinder, to the right of the camera's direction around it, from its distance to
-// the silhouette's middle. Needs no view.
+// Returns the angle of a line around the cylinder's axis, from the direction to the camera, positive to the
+// right. Computed from the line's distance to the silhouette's middle. Needs no view.
 double bearing_of(const UprightLine& line, const EtalonObservation& seen) {
   const double half = 0.5 * (seen.right.at - seen.left.at);
   return std::asin(std::clamp((line.at - seen.middle(seen.middle_row)) / half, -1.0, 1.0));

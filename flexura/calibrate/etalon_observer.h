@@ -20,8 +20,8 @@ namespace flexura {
 [[nodiscard]] SeenArm drawn_etalon(const EtalonObservation& seen, const EtalonConfig& etalon,
                                    const View& view);
 
-/// Returns the observer for a session with the configured calibration cylinder. It reports observations as
-/// SeenArm (drawn_etalon). All arguments must outlive the observer.
+/// Returns the observer for a session with the configured calibration cylinder. The observer reports
+/// observations as SeenArm (drawn_etalon). All arguments must outlive the observer.
 [[nodiscard]] std::unique_ptr<RigObserver> etalon_observer(const RigModel& nominal, const RigPrior& prior,
                                                            const RigSessionConfig& config);
 

@@ -73,11 +73,11 @@ struct LoopResult {
 };
 
 /// Calibrates two cameras by a loop that takes pictures, measures, decides and moves
-/// (docs/calibration-paper.md). It uses only the ports. `nominal` has the ranges and resolutions of heads,
-/// stages and lenses, and the focal lengths. The loop fails after an error, and if it diverges or oscillates.
-/// Heads, stages and arm then return to the start, and the result states the reason. Equal rigs, readings and
-/// pictures give equal results. Throws std::invalid_argument if the ports do not have the cameras of the
-/// model, or if both cameras are the same.
+/// (docs/calibration-paper.md). The session uses only the ports. `nominal` has the ranges and resolutions of
+/// heads, stages and lenses, and the focal lengths. The loop fails after an error, and if it diverges or
+/// oscillates. Heads, stages and arm then return to the start, and the result states the reason. Equal rigs,
+/// readings and pictures give equal results. Throws std::invalid_argument if the ports do not have the
+/// cameras of the model, or if both cameras are the same.
 [[nodiscard]] LoopResult calibrate_by_loop(const RigPorts& ports, const RigModel& nominal,
                                            const LoopConfig& config, RigSessionWatcher& watcher);
 

@@ -34,8 +34,8 @@ class MarkerPalette {
 /// Returns the visible markers in order, then the visible ends.
 [[nodiscard]] std::vector<MarkerFeature> features_of(const MarkerScene& scene, const MarkerPalette& palette);
 
-/// Returns, for each expected feature, the largest distance of a matching seen feature, px. It is a third of
-/// the distance to the nearest other expected feature of equal kind, and at most 40 px.
+/// Returns, for each expected feature, the largest distance of a matching seen feature, px. The result is a
+/// third of the distance to the nearest other expected feature of equal kind, and at most 40 px.
 [[nodiscard]] std::vector<double> tolerances(const std::vector<MarkerFeature>& expected);
 
 /// Receives a similarity that may map the expected picture to the seen picture. `turn`: complex factor for
@@ -43,8 +43,8 @@ class MarkerPalette {
 using MarkerMove = std::function<void(const std::complex<double>& turn, const std::complex<double>& from,
                                       const std::complex<double>& to)>;
 /// Calls `move` for each similarity that maps a pair of expected features to a pair of seen features of equal
-/// kinds. It uses at most twelve pairs of seen features: those farthest apart, with each feature in at most
-/// three pairs.
+/// kinds. Uses at most twelve pairs of seen features, the pairs with the largest distances. Each feature is
+/// in at most three pairs.
 void for_likely_moves(const std::vector<MarkerFeature>& expected, const std::vector<MarkerFeature>& seen,
                       const MarkerMove& move);
 

@@ -46,10 +46,11 @@ struct MatchPrior {
 /// scaled (by 0.5 to 2). The score of a match is the number of seen features that are near an expected
 /// feature of equal kind. Ends are one kind of features, and each marker colour is another kind. Each seen
 /// feature that is not expected reduces the score by 1. Each expected feature that is not seen, but should be
-/// inside an image of `size` px, reduces it by 1/2. It is also reduced by half the squared size of the
-/// similarity in standard deviations of `match_prior`. This prevents a match of equal markers that is shifted
-/// by one marker. Returns the match with the best score. For equal scores, returns the one with smaller
-/// distances, and for equal distances the first one.
+/// inside an image of `size` px, reduces the score by 1/2. The score is also reduced by
+/// d^2 / 2, where d is the size of the similarity transform in standard deviations of `match_prior`. This
+/// prevents a match of equal markers that is shifted by one marker. Returns the match with the best score. Of
+/// matches with equal scores, returns the match with the smaller distances; if these are equal too, the first
+/// match.
 [[nodiscard]] MarkerMatch match_markers(const MarkerScene& expected, const MarkerScene& seen,
                                         const std::array<int, 2>& size, const MatchPrior& match_prior = {});
 

@@ -122,11 +122,12 @@ class Vote {
     const double scale = std::log(std::abs(turn)), roll = std::arg(turn);
     const Intrinsics& lens = view.lens.intrinsics();
     const Point middle(lens.cx, lens.cy), back = middle + (to - middle) / std::abs(turn);
-    const auto ray = [&](const Point& at) {
-      return Eigen::Vector3d((at.real() - lens.cx) / lens.fx, (at.imag() - lens.cy) / lens.fy, 1)
-          .normalized();
-    };
-    const Eigen::Vector3d rolled = so3_exp(Eigen::Vector3d(0, 0, roll)) * ray(from), aimed = ray(back);
+    const auto seen_from = view.lens.unproject({from.real(), from.imag()}),
+               seen_back = view.lens.unproject({back.real(), back.imag()});
+    if (!seen_from || !seen_back) return std::nullopt;
+    const Eigen::Vector3d rolled =
+                              so3_exp(Eigen::Vector3d(0, 0, roll)) * seen_from->homogeneous().normalized(),
+                          aimed = seen_back->homogeneous().normalized();
     const Eigen::Matrix3d R = so3_exp(between(rolled, aimed)) * so3_exp(Eigen::Vector3d(0, 0, roll));
     PointingError error{view.X_WC.rotation * so3_log(R), scale};
     constexpr double unlikely = 16;

@@ -90,7 +90,7 @@ RigDescent approach(RigProblem& coarse, RigProblem& problem, const Detour& detou
   descent.most_iterations = config.most_iterations;
   // A few markers may fit a distortion that makes the lens unable to show the arm outside the picture.
   descent.is_free.assign(static_cast<std::size_t>(variables.count()), true);
-  constexpr Eigen::Index of_distortion = 5;
+  constexpr auto of_distortion = static_cast<Eigen::Index>(Distortion::most);
   free_slots(variables, distortion_slot, of_distortion, descent.is_free, false);
   go(coarse);
   descent.is_free.clear();

@@ -22,13 +22,14 @@ struct RigPatience {
   double bend = 0.02;
 };
 
-/// Commander of a rig. It moves the rig through its ports, waits until nothing moves, checks that commands
-/// were executed, and takes frames at rest. It returns errors as sentences.
+/// Commander of a rig. The commander moves the rig through its ports, waits until nothing moves, checks that
+/// commands were executed, and takes frames at rest. Errors are returned as sentences.
 class RigCommander {
  public:
   using Error = std::optional<std::string>;
 
-  /// `nominal` has the ranges and resolutions of heads and stages. It must have the cameras of the ports.
+  /// `nominal` has the ranges and resolutions of heads and stages. The cameras of `nominal` and of `ports`
+  /// must correspond one to one.
   RigCommander(const RigPorts& ports, const RigModel& nominal, const RigPatience& patience);
 
   /// Returns the present position of the arm, or an error.

@@ -29,8 +29,8 @@ struct RigReading {
   [[nodiscard]] bool is_whole() const { return found.is_found && unexplained <= 0.05 * things; }
 };
 
-/// Observer of a session's target, which is the arm or the calibration cylinder. It measures the target in
-/// pictures, stores the observations, and estimates the rig that explains all observations.
+/// Observer of a session's target, which is the arm or the calibration cylinder. The observer measures the
+/// target in pictures, stores the observations, and estimates the rig that explains all observations.
 class RigObserver {
  public:
   /// Smallest number of markers of a useful picture if the rig is known. With a known rig, even a few markers
@@ -59,8 +59,8 @@ class RigObserver {
   /// Returns the rig that explains most of the stored observations. `found`: the previous estimate. Finds no
   /// rig if nothing is identified in the pictures of one camera.
   [[nodiscard]] virtual RigReading read(const RigModel* found) const = 0;
-  /// Returns the observations in a stored picture, identified with the estimated rig. Their stance and pose
-  /// are 0.
+  /// Returns the observations in a stored picture, identified with the estimated rig. The indices of stance
+  /// and pose in these observations are 0.
   [[nodiscard]] virtual RigImage image_of_observed(const RigModel& model,
                                                    const CameraObservation& observed) const = 0;
 

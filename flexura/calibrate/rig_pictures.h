@@ -14,8 +14,8 @@ namespace flexura {
 /// Returns the number of visible markers.
 [[nodiscard]] std::size_t markers_of(const MarkerScene& scene);
 
-/// The pictures of a session. Their markers are identified again whenever the rig estimate improves, because
-/// a wrong estimate leads to wrong identities.
+/// The pictures of a session. The markers in the pictures are identified again whenever the rig estimate
+/// improves, because a wrong estimate leads to wrong identities.
 class RigPictures {
  public:
   struct Look {

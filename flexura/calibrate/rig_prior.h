@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flexura/base/degree.h"
+#include "flexura/camera/distortion.h"
 #include "flexura/port/rig_model.h"
 
 namespace flexura {
@@ -23,7 +24,8 @@ struct CameraPrior {
   double focal = 0.1;           ///< Relative error of the focal length.
   double aspect = 0.001;        ///< Relative error of fy alone.
   double principal_point = 10;  ///< Principal point in each direction, px.
-  std::array<double, 5> distortion = {0.02, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3.
+  /// Distortion coefficients, in the order of the lens model.
+  std::array<double, Distortion::most> distortion = {0.02, 0, 0, 0, 0, 0, 0, 0};
   double zoom_row = 0.01;  ///< Relative error of the focal length of each row of a zoom table.
   /// Error of an axis position of head or stage, in steps of the axis's resolution. The default is the
   /// standard deviation of an error that is uniformly distributed within half a step. 0: positions are exact.
@@ -37,9 +39,9 @@ struct ArmPrior {
   double bend_share = 0.01;  ///< Relative error of each bend, independent in each pose.
   double bend = 0.001;       ///< Additional error of each bend, rad.
   /// Error of the bends that the model predicts for a command, equal in all poses. The error of each
-  /// section's bend is a sum of unknown shares of all sections' commanded bends and of its own sag. This is
-  /// the standard deviation of these shares. If `response` and `pose_response` are 0, the arm has no such
-  /// errors.
+  /// section's bend is a sum of unknown shares of all sections' commanded bends and of its own sag. This
+  /// value is the standard deviation of the shares. If `response` and `pose_response` are 0, the arm has no
+  /// such errors.
   double response = 0;
   /// Standard deviation of additional shares as in `response`, which are independent in each pose.
   double pose_response = 0;
@@ -52,9 +54,10 @@ struct RigPrior {
 };
 
 /// Returns the prior of a rough initial guess. The standard deviations are 10 degrees for rotations, 10 % for
-/// focal lengths and 10 px for principal points. For a camera's position, it is `share` times the camera's
-/// distance from the point `seen` (W, m; default: the arm's base). For the zeros of tilt axes, it is 2
-/// degrees. It is also 2 degrees for the zeros of pan axes of cameras whose stage can move.
+/// focal lengths and 10 px for principal points. For a camera's position, the standard deviation is `share`
+/// times the camera's distance from the point `seen` (W, m; default: the arm's base). For the zeros of tilt
+/// axes, the standard deviation is 2 degrees. For the zero of the pan axis of a camera whose stage can move,
+/// the standard deviation is also 2 degrees.
 [[nodiscard]] RigPrior rough_prior(const RigModel& model, double share = 0.2,
                                    const std::optional<Eigen::Vector3d>& seen = {});
 

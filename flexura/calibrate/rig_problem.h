@@ -30,7 +30,7 @@ class RigProblem {
   [[nodiscard]] const RigPrior& prior() const { return prior_; }
   [[nodiscard]] const RigObservations& observations() const { return seen_; }
 
-  /// Assigns a rim half (RimHalf) to each point of the cylinder's rims: the one that bounds the silhouette
+  /// Assigns a rim half (RimHalf) to each point of the cylinder's rims: the half that bounds the silhouette
   /// for the rig at x. Later functions use these halves. Returns whether any half changed.
   bool choose_rims(const Eigen::VectorXd& x);
   /// Linearises the residuals at x. Returns false if an observed point would be invisible for the rig at x.

@@ -91,7 +91,8 @@ void RigProjector::add_camera_slots(const CameraProjection& projection, std::siz
   by.col(focal_slot) = now.fx * by_fx + now.fy * by_fy;
   by.col(aspect_slot) = now.fy * by_fy;
   by.middleCols<2>(principal_point_slot) = projection.by_intrinsics.middleCols<2>(2);
-  by.middleCols<5>(distortion_slot) = projection.by_intrinsics.middleCols<5>(4);
+  by.middleCols<static_cast<int>(Distortion::most)>(distortion_slot) =
+      projection.by_intrinsics.rightCols<static_cast<int>(Distortion::most)>();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto by_row = lens.by_row(where.head.zoom, i);
     by.col(zoom_row_slot + static_cast<Eigen::Index>(i)) =

@@ -34,8 +34,8 @@ class RigProjector {
   /// the camera, or outside the range of the lens.
   [[nodiscard]] bool rows(const RigImage& image, RigRows& rows);
 
-  /// Image of a point of the arm for a stance. Its derivatives are with respect to all slots, in the order
-  /// camera, arm, pose, stance.
+  /// Image of a point of the arm for a stance. The derivatives of the image are with respect to all slots, in
+  /// the order camera, arm, pose, stance.
   struct Shown {
     Eigen::Vector2d pixel;
     Eigen::Matrix<double, 2, Eigen::Dynamic> by_slots;

@@ -266,8 +266,8 @@ class Session {
       result_.verified[i] = prediction.px;
       if (!(prediction.sigmas <= most))
         return fmt::format(
-            "after the move, camera {} sees the {} at a distance of {} px from its predicted position, which "
-            "is {} standard deviations: the head may have backlash or was pushed{}",
+            "after the move, camera {} sees the {} at a distance of {} px from its predicted position, "
+            "which is {} standard deviations. The head may have backlash or was pushed{}",
             name(i), what_, bounded_text(prediction.px, 1000, 3), bounded_text(prediction.sigmas, 1000, 3),
             config_.etalon ? "" : ", or the arm does not bend reproducibly");
     }
@@ -314,7 +314,7 @@ class Session {
     constexpr double suspicious_rms = 1.2;
     if (result_.found.rms > suspicious_rms)
       result_.desired.notes.push_back(fmt::format(
-          "the residuals of the best rig are {:.2g} standard deviations (root mean square): the arm may bend "
+          "the residuals of the best rig are {:.2g} standard deviations (root mean square). The arm may bend "
           "differently from its model, and errors of estimated shapes may be larger than stated",
           result_.found.rms));
   }

@@ -41,17 +41,17 @@ struct RigSessionConfig {
   std::size_t fewest = 5;  ///< Smallest number of markers in a useful picture.
   RigSigmas desired;       ///< Standard deviations below which the session takes no further views.
   std::optional<Eigen::Vector3d> target;  ///< Target of the cameras in W, m; default: the arm's middle.
-  /// If set, the session observes the calibration cylinder instead of the arm. It then needs no markers, and
-  /// `poses` must have only the arm's present pose. The default target is then the cylinder's middle. Views
-  /// begin with the shortest focal length.
+  /// If set, the session observes the calibration cylinder instead of the arm. The session then needs no
+  /// markers, and `poses` must have only the arm's present pose. The default target is then the cylinder's
+  /// middle. Views begin with the shortest focal length.
   std::optional<EtalonConfig> etalon;
   /// Bright screens behind the cylinder. The session prefers views in which a screen fills the pictures.
   std::vector<ScreenConfig> screens = {};
   bool may_use_stages = true;  ///< Whether stages may move.
   /// Focal lengths of the views, relative to the initial focal length.
   std::vector<double> zooms = {1, 2.5};
-  /// Range of stage positions in each direction, as a share of the camera's distance from the target. It is
-  /// also limited by the stage's travel.
+  /// Range of stage positions in each direction, as a share of the camera's distance from the target. The
+  /// stage's travel also limits this range.
   double slide = 0.15;
   double move_duration = 2;  ///< Duration of a move of the arm to a pose or back, s.
   double search = 0.2;  ///< Range of head turns in the search for an arm that is not visible at first, rad.
@@ -103,8 +103,8 @@ struct LoopDecision {
   std::string next;                 ///< Next action in words.
 };
 
-/// The ideal arc of the arm for a camera, computed with the simulator (steps 1, 2 and 7 of section 3.4). The
-/// camera's pictures are compared with this arc.
+/// The ideal arc of the arm for a camera, computed with the simulator (steps 1, 2 and 7 of section 3.4 of the
+/// paper). The camera's pictures are compared with this arc.
 struct IdealArc {
   double time = 0;              ///< Time of the computation, s.
   std::size_t camera = 0;       ///< Index of the camera in the rig.
@@ -114,7 +114,7 @@ struct IdealArc {
   Image<std::uint8_t> picture;  ///< The ideal image, gray.
 };
 
-/// Receives the events of a session. Its only influence on the session is that it may cancel it.
+/// Receives the events of a session. A receiver cannot change the session, but can cancel it.
 class RigSessionWatcher {
  public:
   virtual ~RigSessionWatcher() = default;
@@ -175,8 +175,8 @@ struct RigSessionResult {
 /// Between poses, the arm passes through its initial shape. An error ends the session: heads, stages and arm
 /// return to the start, and the result states the reason. The session uses only the ports. Equal rigs,
 /// readings and pictures give equal results. Throws std::invalid_argument if poses or markers are missing, if
-/// `images` is below 3, or if `first` is 0. Also throws it if both cameras are the same, or if the ports do
-/// not have the cameras of the model.
+/// `images` is below 3, or if `first` is 0. Also throws std::invalid_argument if both cameras are the same,
+/// or if the ports lack cameras of the model.
 [[nodiscard]] RigSessionResult calibrate_rig_in_session(const RigPorts& ports, const RigModel& nominal,
                                                         const RigPrior& prior, const RigSessionConfig& config,
                                                         RigSessionWatcher& watcher);

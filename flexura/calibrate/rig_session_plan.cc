@@ -249,8 +249,8 @@ RigCommander::Error RigSessionPlan::error_with(const RigModel& model, const Desi
     const double aside = desired.remainder.aim[i].norm();
     if (aside > most_aside * sights[i].norm())
       return fmt::format(
-          "at the limits of the stages, the lines of sight are {:.1f} deg apart: with orthogonal axes, the "
-          "axis of camera {} would pass at {:.2f} m from the {}; mount the cameras more nearly at a right "
+          "at the limits of the stages, the lines of sight are {:.1f} deg apart. With orthogonal axes, the "
+          "axis of camera {} would pass at {:.2f} m from the {}. Mount the cameras more nearly at a right "
           "angle, or allow more travel of the stages{}",
           angle / degree, model.cameras[desired.stances[i].camera].name, aside,
           config_.etalon ? "cylinder" : "arm", why);

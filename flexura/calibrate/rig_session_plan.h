@@ -26,8 +26,8 @@ class RigSessionPlan {
   /// Returns the stance of a camera for the first view: its initial stance; with an etalon, its initial
   /// stance with the shortest focal length.
   [[nodiscard]] RigStance first(const RigStance& begins) const;
-  /// Returns the target of the cameras in W, m. It is the configured target. By default, it is the middle of
-  /// the etalon or, without an etalon, the middle of the arm in the first pose.
+  /// Returns the target of the cameras in W, m. Without a configured target, returns the middle of the
+  /// etalon. Without an etalon, returns the middle of the arm in the first pose.
   [[nodiscard]] Eigen::Vector3d target(const RigModel& model) const;
   /// Returns the commands for the required configuration. `stances`: present positions.
   [[nodiscard]] DesiredRig desired(const RigModel& model, const std::array<RigStance, 2>& stands) const;

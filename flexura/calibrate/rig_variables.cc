@@ -111,9 +111,11 @@ void RigVariables::add_camera(const CameraConfig& camera, const CameraPrior& pri
   add(name + "aspect", prior.aspect, usual.aspect);
   add(name + "principal point, u", prior.principal_point, usual.principal_point);
   add(name + "principal point, v", prior.principal_point, usual.principal_point);
-  constexpr std::array<const char*, 5> coefficients = {"k1", "k2", "p1", "p2", "k3"};
-  for (std::size_t i = 0; i < coefficients.size(); ++i)
-    add(name + coefficients[i], prior.distortion[i], usual.distortion[0]);
+  const std::vector<std::string>& coefficients = coefficient_names(camera.lens.model);
+  for (std::size_t i = 0; i < Distortion::most; ++i) {
+    const bool is_there = i < coefficients.size();
+    add(is_there ? name + coefficients[i] : "", is_there ? prior.distortion[i] : 0, usual.distortion[0]);
+  }
   for (std::size_t i = 0; i < camera.lens.zoom.size(); ++i)
     add(fmt::format("{}focal length of zoom row {}", name, i + 1), prior.zoom_row, usual.zoom_row);
 }
@@ -229,7 +231,7 @@ CameraConfig RigVariables::camera(const Eigen::VectorXd& x, std::size_t number) 
   const double fx = std::exp(value(x, first + focal_slot));
   const double fy = fx * std::exp(value(x, first + aspect_slot));
   const double cx = value(x, first + principal_point_slot), cy = value(x, first + principal_point_slot + 1);
-  const auto distort = [&](std::array<double, 5>& distortion) {
+  const auto distort = [&](Distortion& distortion) {
     for (std::size_t i = 0; i < distortion.size(); ++i)
       distortion[i] += value(x, first + distortion_slot + i);
   };

@@ -26,25 +26,25 @@ enum CameraSlot : Eigen::Index {
   focal_slot = 15,            // logarithm of the factor on fx and fy at every zoom
   aspect_slot = 16,           // logarithm of the factor on fy alone
   principal_point_slot = 17,  // 2: px, at every zoom
-  distortion_slot = 19,       // 5: added at every zoom
-  zoom_row_slot = 24,
+  distortion_slot = 19,       // 8: added at every zoom; those that the lens model does not have are fixed
+  zoom_row_slot = distortion_slot + static_cast<Eigen::Index>(Distortion::most),
 };
 
-/// Number of slots of a stance. They are offsets from the measured positions: pan, tilt (rad), zoom (in its
-/// own unit), and the stage's x, y and z (m).
+/// Number of slots of a stance. The slots are offsets from the measured positions: pan, tilt (rad), zoom (in
+/// its own unit), and the stage's x, y and z (m).
 inline constexpr Eigen::Index stance_slots = 6;
 
 /// The unknown errors of a rig and of its measured positions as one vector x, where x = 0 is the guess. Each
 /// variable is an offset from the guess in its own unit. Variables that the prior fixes have no entry in x.
 /// The first variables are those of each camera and of the arm (logarithms of the lengths, bend gains, errors
-/// of the response). Those of each pose (bend offsets from the command) and of each stance follow. If the
-/// prior has errors of the response, poses with equal commands share their variables. The variables of
+/// of the response). Next are the variables of each pose (bend offsets from the command) and of each stance.
+/// If the prior has errors of the response, poses with equal commands share their variables. The variables of
 /// cameras and arm are called the rig's own variables; globals() is their number.
 class RigVariables {
  public:
   /// Throws std::invalid_argument if there is not one prior per camera, or if a prior is negative or NaN.
-  /// Also throws it if observations refer to missing cameras, stances or poses, do not fit the arm, or are in
-  /// a wrong order. Throws std::out_of_range for a marker beyond the arm's end.
+  /// Also throws std::invalid_argument if observations refer to missing cameras, stances or poses, do not fit
+  /// the arm, or are in a wrong order. Throws std::out_of_range for a marker beyond the arm's end.
   RigVariables(const RigModel& guess, const RigPrior& prior, const RigObservations& seen);
 
   /// A variable of the rig.
@@ -58,7 +58,7 @@ class RigVariables {
 
   /// Returns the number of variables in x.
   [[nodiscard]] Eigen::Index count() const { return count_; }
-  /// Returns the number of the rig's own variables, which are the first ones in x.
+  /// Returns the number of the rig's own variables, which are the first variables in x.
   [[nodiscard]] Eigen::Index globals() const { return globals_; }
   /// Returns the variable with this index in x.
   [[nodiscard]] const Variable& variable(Eigen::Index column) const {

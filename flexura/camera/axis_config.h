@@ -17,8 +17,8 @@ struct AxisConfig {
   double backlash = 0;    ///< Motor travel without motion of the axis after a reversal.
 };
 
-/// Returns the commandable position nearest to `position`. The result is within the limits. It is a multiple
-/// of the resolution, unless the limits contain no multiple.
+/// Returns the commandable position nearest to `position`. The result is within the limits. If the limits
+/// contain a multiple of the resolution, the result is such a multiple.
 [[nodiscard]] double commandable(const AxisConfig& axis, double position);
 
 }  // namespace flexura

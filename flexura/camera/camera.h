@@ -73,7 +73,7 @@ class Camera {
   [[nodiscard]] std::array<double, 2> angles(const HeadState& head) const;
   /// Returns the head position with the given zoom at which the camera looks along `direction`, a vector in W
   /// with any length above 0. The result is neither clamped to limits nor quantised. Of the pan angles that
-  /// differ by full turns, it has the one nearest to the middle of the pan limits.
+  /// differ by full turns, the result has the pan angle nearest to the middle of the pan limits.
   [[nodiscard]] HeadState looking_along(const Eigen::Vector3d& direction, double zoom) const;
 
   /// Returns the pose X_WC of the camera's frame, whose origin is the entrance pupil. This function and the

@@ -139,6 +139,7 @@ LensConfig spelled_out(const CameraConfig& camera) {
   lens.fy = lens.fy.value_or(lens.fx);
   lens.cx = lens.cx.value_or(0.5 * static_cast<double>(camera.sensor.width - 1));
   lens.cy = lens.cy.value_or(0.5 * static_cast<double>(camera.sensor.height - 1));
+  lens.distortion = distortion_of(lens.model, lens.distortion);
   for (ZoomRow& row : lens.zoom) {
     const Intrinsics there = table.at(row.count.value_or(row.ratio));
     row.fx = there.fx, row.fy = there.fy, row.cx = there.cx, row.cy = there.cy;

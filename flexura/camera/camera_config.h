@@ -46,9 +46,9 @@ const Table<CameraConfig>& fields_of(const CameraConfig*);
 void check_cameras(const std::vector<CameraConfig>& cameras, const std::string& path, Reader& reader);
 
 /// Returns the paper's two cameras, which look at `center`, in W, m. "front" is on the +Z side and looks
-/// along -Z at the plane XOY; "side" is on the -X side and looks along +X at the plane ZOY. Their distance is
-/// such that a sphere of radius `reach`, m, around `center` fits into the image with a margin of 5 %. Throws
-/// std::invalid_argument for a reach that is not positive.
+/// along -Z at the plane XOY; "side" is on the -X side and looks along +X at the plane ZOY. The distance of
+/// both cameras is such that a sphere of radius `reach`, m, around `center` fits into the image with a margin
+/// of 5 %. Throws std::invalid_argument for a reach that is not positive.
 [[nodiscard]] std::vector<CameraConfig> default_cameras(double reach,
                                                         const std::array<double, 3>& center = {0, 0, 0});
 

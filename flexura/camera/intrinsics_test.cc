@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -19,8 +20,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// From no distortion to strong barrel and pincushion. At the corner of a wide lens (a radius of 1) the image
-// moves by up to 60 % of the radius.
+// From no distortion to strong barrel and pincushion, of all lens models. At the corner of a wide lens (a
+// radius of 1) the image moves by up to 60 % of the radius.
 Intrinsics random_intrinsics(TestRandom& random) {
   Intrinsics intrinsics;
   intrinsics.fx = random.uniform(200, 5000), intrinsics.fy = intrinsics.fx * random.uniform(0.9, 1.1);
@@ -30,6 +31,14 @@ Intrinsics random_intrinsics(TestRandom& random) {
   intrinsics.distortion = {scale * random.uniform(-0.4, 0.4), scale * random.uniform(-0.2, 0.2),
                            scale * random.uniform(-0.01, 0.01), scale * random.uniform(-0.01, 0.01),
                            scale * random.uniform(-0.1, 0.1)};
+  const auto model = static_cast<LensModel>(random.integer(0, 2));
+  if (model == LensModel::brown) return intrinsics;
+  Distortion other(model);
+  std::copy_n(intrinsics.distortion.begin(), std::min<std::size_t>(5, other.size()), other.begin());
+  if (model == LensModel::fisheye)
+    for (double& k : other) k *= 0.2;
+  for (std::size_t i = 5; i < other.size(); ++i) other[i] = scale * random.uniform(-0.1, 0.2);
+  intrinsics.distortion = other;
   return intrinsics;
 }
 
@@ -53,9 +62,9 @@ TEST(Lens, UnprojectsWhatItProjects) {
 TEST(Lens, ProjectsBackToThePixelUpToItsRim) {
   for_random_cases(2000, [](TestRandom& random) {
     Intrinsics intrinsics = random_intrinsics(random);
-    intrinsics.distortion[0] = random.uniform(-0.5, -0.1);  // So that there is a rim.
-    intrinsics.distortion[1] = intrinsics.distortion[4] = 0;
-    intrinsics.distortion[2] = intrinsics.distortion[3] = 0;
+    intrinsics.distortion = {random.uniform(-0.5, -0.1), 0, 0, 0, 0};  // So that there is a rim.
+    if (random.integer(0, 2) == 0) intrinsics.distortion = {random.uniform(-0.5, -0.2), 0, 0, 0};
+    if (random.integer(0, 2) == 0) intrinsics.distortion = {-0.3, 0, 0, 0, 0, random.uniform(0, 0.4), 0, 0};
     const Lens lens(intrinsics);
     // Near the rim the radius changes with the square root of the pixel's change.
     const double inward = std::pow(10.0, random.uniform(-14, -1));
@@ -104,7 +113,7 @@ TEST(Lens, HasItsCoefficientsInTheirOrder) {
   }
 }
 
-TEST(Lens, ItsRimIsWhereTheRadialPartFirstStopsGrowing) {
+TEST(Lens, TheRimOfTheModelBrownIsWhereTheRadialPartFirstStopsGrowing) {
   for_random_cases(2000, [](TestRandom& random) {
     Intrinsics intrinsics;
     intrinsics.distortion = {random.uniform(-1, 1), random.uniform(-1, 1), 0, 0, random.uniform(-1, 1)};
@@ -117,6 +126,78 @@ TEST(Lens, ItsRimIsWhereTheRadialPartFirstStopsGrowing) {
     if (rim == infinity) return;
     EXPECT_NEAR(slope(rim), 0, 1e-9 * (1 + std::pow(rim, 6)));
   });
+}
+
+TEST(Lens, ItsRimIsWhereTheImageFirstStopsGrowing) {
+  int rims = 0;
+  for_random_cases(2000, [&](TestRandom& random) {
+    Distortion distortion(random.integer(0, 1) == 0 ? LensModel::rational : LensModel::fisheye);
+    for (double& k : distortion) k = random.uniform(-1, 1);
+    if (distortion.model() == LensModel::rational) distortion[2] = distortion[3] = 0;
+    const Lens lens({.fx = 1, .fy = 1, .cx = 0, .cy = 0, .distortion = distortion});
+    const double rim = lens.largest_radius();
+    double before = 0;
+    for (double r = 0.001; r < std::min(rim, 20.0); r *= 1.01) {
+      const auto pixel = lens.project(at(r, 0));
+      ASSERT_TRUE(pixel) << r;
+      EXPECT_GT(pixel->x(), before) << r;
+      before = pixel->x();
+    }
+    // Just beyond the rim the image of the model shrinks, or has its pole.
+    if (rim > 20) return;
+    ++rims;
+    const double inside = lens.project(at(rim * (1 - 1e-4), 0))->x();
+    const auto [k1, k2, k3] = std::array{distortion[0], distortion[1], distortion[4]};
+    const double q = std::pow(rim * (1 + 2e-4), 2), angle = std::atan(std::sqrt(q)), t = angle * angle;
+    const double radial = distortion.model() == LensModel::fisheye
+                              ? angle * (1 + t * (k1 + t * (k2 + t * (distortion[2] + t * distortion[3]))))
+                              : std::sqrt(q) * (1 + q * (k1 + q * (k2 + q * k3))) /
+                                    (1 + q * (distortion[5] + q * (distortion[6] + q * distortion[7])));
+    EXPECT_TRUE(radial < inside || radial > 100 * (1 + rim)) << radial << " " << inside;
+  });
+  EXPECT_GT(rims, 100);
+}
+
+// The image of a lens with a pole reaches infinity at its rim.
+TEST(Lens, HasRaysForAllPixelsUpToAPole) {
+  for (double k4 = -0.01; k4 > -0.995; k4 -= 0.01) {
+    const Lens lens({.fx = 200, .fy = 200, .cx = 0, .cy = 0, .distortion = {0, 0, 0, 0, 0, k4, 0, 0}});
+    EXPECT_NEAR(lens.largest_radius(), 1 / std::sqrt(-k4), 1e-9 / -k4);
+    for (double u = 5; u < 1e4; u *= 1.3) {
+      const auto ray = lens.unproject({u, 0});
+      ASSERT_TRUE(ray) << k4 << " " << u;
+      EXPECT_NEAR(lens.project(ray->homogeneous())->x(), u, 1e-9 * u);
+    }
+  }
+}
+
+// An equidistant lens shows each angle at f times the angle, up to a right angle.
+TEST(Lens, AFisheyeLensShowsAngles) {
+  const Lens lens({.fx = 200, .fy = 200, .cx = 300, .cy = 300, .distortion = Distortion(LensModel::fisheye)});
+  EXPECT_EQ(lens.largest_radius(), infinity);
+  EXPECT_TRUE(lens.intrinsics().is_distorted());
+  for (const double angle : {0.0, 1e-9, 1e-4, 0.13, 0.15, 0.5, 1.0, 1.5, 1.57}) {
+    const auto pixel = lens.project({0, 2 * std::sin(angle), 2 * std::cos(angle)});
+    ASSERT_TRUE(pixel);
+    EXPECT_NEAR(pixel->y(), 300 + 200 * angle, 1e-12 * 300) << angle;
+    const auto back = lens.unproject(*pixel);
+    ASSERT_TRUE(back) << angle;
+    EXPECT_NEAR(std::atan(back->y()), angle, 1e-13);
+  }
+  EXPECT_FALSE(lens.unproject({300 + 200 * 1.58, 300}));
+  EXPECT_FALSE(lens.project({1, 0, -0.001}));
+}
+
+TEST(Lens, ADistortionIsThatOfItsModel) {
+  EXPECT_EQ(Distortion().model(), LensModel::brown);
+  EXPECT_EQ((Distortion{1, 2, 3, 4}).model(), LensModel::fisheye);
+  EXPECT_EQ((Distortion{1, 2, 3, 4, 5, 6, 7, 8}).model(), LensModel::rational);
+  EXPECT_THROW((Distortion{1, 2, 3}), std::invalid_argument);
+  EXPECT_EQ(distortion_fault(LensModel::fisheye, {1, 0, 0, 0, 0}),
+            "5 coefficients for the lens model fisheye: expected 4 (k1, k2, k3, k4)");
+  EXPECT_EQ(distortion_of(LensModel::fisheye, {0, 0, 0, 0, 0}), Distortion(LensModel::fisheye));
+  EXPECT_THROW((void)distortion_of(LensModel::brown, {0, 1, 0, 0}), std::invalid_argument);
+  EXPECT_FALSE(Intrinsics{}.is_distorted());
 }
 
 TEST(Lens, ProjectsOnlyWhatIsInFront) {
@@ -155,16 +236,19 @@ TEST(Lens, ItsDerivativesAreThoseOfItsPixels) {
     const Intrinsics intrinsics = random_intrinsics(random);
     const double rim = std::min(0.8 * Lens(intrinsics).largest_radius(), 1.0);
     const Eigen::Vector3d p_CP = at(random.uniform(0, rim), random.uniform(-3.2, 3.2)) * random.uniform(1, 4);
-    Eigen::VectorXd x(12);
+    const auto size = static_cast<Eigen::Index>(intrinsics.distortion.size());
+    Eigen::VectorXd x(7 + size);
     x << p_CP, intrinsics.fx, intrinsics.fy, intrinsics.cx, intrinsics.cy,
-        Eigen::Map<const Eigen::Vector<double, 5>>(intrinsics.distortion.data());
-    const VectorFunction pixel = [](const Eigen::VectorXd& y) -> Eigen::VectorXd {
-      Intrinsics changed{y[3], y[4], y[5], y[6], {y[7], y[8], y[9], y[10], y[11]}};
+        Eigen::Map<const Eigen::VectorXd>(intrinsics.distortion.data(), size);
+    const VectorFunction pixel = [&](const Eigen::VectorXd& y) -> Eigen::VectorXd {
+      Intrinsics changed{y[3], y[4], y[5], y[6], intrinsics.distortion};
+      std::copy_n(y.data() + 7, size, changed.distortion.begin());
       return *Lens(changed).project(y.head<3>());
     };
     const Projection projection = *Lens(intrinsics).project_with_derivatives(p_CP);
-    Eigen::Matrix<double, 2, 12> analytic;
-    analytic << projection.by_point, projection.by_intrinsics;
+    Eigen::MatrixXd analytic(2, 7 + size);
+    analytic << projection.by_point, projection.by_intrinsics.leftCols(4 + size);
+    EXPECT_TRUE(projection.by_intrinsics.rightCols(intrinsics_count - 4 - size).isZero(0));
     const NumericalJacobian numeric = numerical_jacobian(pixel, x, 0.01);
     EXPECT_EQ(projection.pixel, pixel(x));
     EXPECT_LE((analytic - numeric.value).cwiseAbs().maxCoeff(), 1e-7 * (1 + intrinsics.fx));

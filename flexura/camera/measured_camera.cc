@@ -30,6 +30,8 @@ Eigen::Matrix3d matrix_of(const Rows& rows) {
 }
 
 void check_measured_camera(const MeasuredCamera& camera, Reader& reader) {
+  if (const std::string wrong = distortion_fault(camera.model, camera.distortion); !wrong.empty())
+    reader.problem_at("distortion", wrong);
   if (camera.rotation.error() > largest_error) {
     reader.problem_at("rotation", fmt::format("not a rotation (error {:.2g}): expected the rows of "
                                               "a rotation matrix or a quaternion [w, x, y, z] of norm 1",
@@ -88,7 +90,8 @@ Node Codec<RotationConfig>::write(const RotationConfig& value) {
 }
 
 Lens MeasuredCamera::lens() const {
-  return Lens({.fx = fx, .fy = fy.value_or(fx), .cx = cx, .cy = cy, .distortion = distortion});
+  return Lens(
+      {.fx = fx, .fy = fy.value_or(fx), .cx = cx, .cy = cy, .distortion = distortion_of(model, distortion)});
 }
 
 Pose MeasuredCamera::pose() const { return {rotation.matrix(), {position[0], position[1], position[2]}}; }
@@ -133,9 +136,8 @@ const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
                  {.meaning = "Row of the principal point, px; 0 is the middle of the topmost pixel.",
                   .range = principal_point_range,
                   .required = true})
-          .field("distortion", &C::distortion,
-                 {.meaning = "Brown-Conrady distortion k1, k2, p1, p2, k3, in OpenCV's order.",
-                  .range = distortion_range})
+          .field("model", &C::model, {.meaning = lens_model_meaning})
+          .field("distortion", &C::distortion, distortion_spec(distortion_meaning, "zeros"))
           .field("position", &C::position,
                  {.meaning = "Position of the entrance pupil in the world.", .unit = Unit::metre})
           .field("rotation", &C::rotation,

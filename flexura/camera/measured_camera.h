@@ -38,13 +38,15 @@ struct Codec<RotationConfig> {
 
 /// A measured camera in a file, `[[camera]]`: a camera with a fixed lens and a fixed pose.
 struct MeasuredCamera {
-  std::string name;                                    ///< Name for messages.
-  double fx = 800;                                     ///< Focal length along u, px.
-  std::optional<double> fy;                            ///< Focal length along v, px; default: fx.
-  double cx = 319.5, cy = 239.5;                       ///< Principal point, px.
-  std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< Distortion k1, k2, p1, p2, k3, in OpenCV's order.
-  std::array<double, 3> position = {0, 0, 0};          ///< Position p_WC of the entrance pupil, m.
-  RotationConfig rotation;                             ///< R_WC; C has x right, y down, z forward.
+  std::string name;                    ///< Name for messages.
+  double fx = 800;                     ///< Focal length along u, px.
+  std::optional<double> fy;            ///< Focal length along v, px; default: fx.
+  double cx = 319.5, cy = 239.5;       ///< Principal point, px.
+  LensModel model = LensModel::brown;  ///< Lens model.
+  /// Distortion coefficients. If all are 0, their number need not be that of the model.
+  Distortion distortion;
+  std::array<double, 3> position = {0, 0, 0};  ///< Position p_WC of the entrance pupil, m.
+  RotationConfig rotation;                     ///< R_WC; C has x right, y down, z forward.
   double gamma = 1;  ///< Gamma of the pictures: pixel values are light to the power 1/gamma.
   std::optional<std::array<std::int64_t, 2>>
       size;         ///< Width and height of the camera's pictures, px; default: any.

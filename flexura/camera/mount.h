@@ -42,9 +42,9 @@ struct MountConfig {
   StageConfig stage;
 
   /// Returns X_WM at stage offset 0. Throws std::invalid_argument unless exactly one of look_at and rotation
-  /// is given. Also throws it if look_at is M's origin, or is vertically above or below this origin. It also
-  /// throws it for a quaternion whose norm differs from 1 by more than 1e-3, and for a roll together with
-  /// rotation.
+  /// is given. Also throws std::invalid_argument if look_at is M's origin, or is vertically above or below
+  /// this origin. Also throws std::invalid_argument for a quaternion whose norm differs from 1 by more than
+  /// 1e-3, and for a roll together with rotation.
   [[nodiscard]] Pose pose() const;
 };
 

@@ -13,7 +13,8 @@ namespace flexura {
 /// image.
 struct View {
   Lens lens{Intrinsics{}};
-  /// Pose of C, position in m. C's origin is the entrance pupil. Its axes are x right, y down, z forward.
+  /// Pose of C, position in m. C's origin is the entrance pupil. The axes of C are x right, y down, z
+  /// forward.
   Pose X_WC;
   int width = 640;   ///< Width of the image, px.
   int height = 480;  ///< Height of the image, px.

@@ -18,18 +18,20 @@ constexpr std::size_t max_rows = 1000;
 
 Intrinsics lens_at_one(const LensConfig& config, std::int64_t width, std::int64_t height) {
   return {config.fx, config.fy.value_or(config.fx), config.cx.value_or(0.5 * static_cast<double>(width - 1)),
-          config.cy.value_or(0.5 * static_cast<double>(height - 1)), config.distortion};
+          config.cy.value_or(0.5 * static_cast<double>(height - 1)),
+          distortion_of(config.model, config.distortion)};
 }
 
 Intrinsics lens_at(const ZoomRow& row, const Intrinsics& one) {
   return {row.fx.value_or(one.fx * row.ratio), row.fy.value_or(one.fy * row.ratio), row.cx.value_or(one.cx),
-          row.cy.value_or(one.cy), row.distortion.value_or(one.distortion)};
+          row.cy.value_or(one.cy),
+          row.distortion ? distortion_of(one.distortion.model(), *row.distortion) : one.distortion};
 }
 
 Eigen::Vector<double, intrinsics_count> numbers(const Intrinsics& lens) {
   Eigen::Vector<double, intrinsics_count> result;
   result << lens.fx, lens.fy, lens.cx, lens.cy,
-      Eigen::Map<const Eigen::Vector<double, 5>>(lens.distortion.data());
+      Eigen::Map<const Eigen::Vector<double, Distortion::most>>(lens.distortion.data());
   return result;
 }
 
@@ -54,13 +56,13 @@ const Table<ZoomRow>& fields_of(const ZoomRow*) {
   static const auto table =
       Table<ZoomRow>("zoom row", "A measured zoom position.")
           .field("ratio", &ZoomRow::ratio,
-                 {.meaning = "Zoom ratio: focal length divided by the focal length at ratio 1. It must "
-                             "increase from row to row.",
+                 {.meaning = "Zoom ratio: focal length divided by the focal length at ratio 1. The ratio "
+                             "must increase from row to row.",
                   .range = above_up_to(0, 1e4),
                   .required = true})
           .field("count", &ZoomRow::count,
                  row_spec("Position of the zoom motor. If it is given, zoom positions are motor positions "
-                          "instead of ratios. It must either increase or decrease from row to row.",
+                          "instead of ratios. The position must either increase or decrease from row to row.",
                           {.min = -1e9, .max = 1e9}, "not set"))
           .field("fx", &ZoomRow::fx,
                  row_spec("Horizontal focal length, px.", focal_length_range, "the lens's times the ratio"))
@@ -71,7 +73,7 @@ const Table<ZoomRow>& fields_of(const ZoomRow*) {
           .field("cy", &ZoomRow::cy,
                  row_spec("Row of the principal point, px.", principal_point_range, "the lens's"))
           .field("distortion", &ZoomRow::distortion,
-                 row_spec("Brown-Conrady distortion k1, k2, p1, p2, k3.", distortion_range, "the lens's"));
+                 distortion_spec("Distortion coefficients, as those of the lens.", "the lens's"));
   return table;
 }
 
@@ -88,9 +90,8 @@ const Table<LensConfig>& fields_of(const LensConfig*) {
           .field("cy", &LensConfig::cy,
                  row_spec("Row of the principal point, px from the middle of the topmost pixel.",
                           principal_point_range, "the image's middle"))
-          .field("distortion", &LensConfig::distortion,
-                 {.meaning = "Brown-Conrady distortion k1, k2, p1, p2, k3, in OpenCV's order.",
-                  .range = distortion_range})
+          .field("model", &LensConfig::model, {.meaning = lens_model_meaning})
+          .field("distortion", &LensConfig::distortion, distortion_spec(distortion_meaning, "zeros"))
           .field("zoom", &LensConfig::zoom,
                  {.meaning = "Measured zoom positions, as tables [[camera.lens.zoom]].",
                   .count = {0, max_rows},
@@ -104,6 +105,8 @@ const Table<LensConfig>& fields_of(const LensConfig*) {
 
 std::optional<ZoomTable::Fault> ZoomTable::fault(const LensConfig& config) {
   const auto& rows = config.zoom;
+  if (const std::string wrong = distortion_fault(config.model, config.distortion); !wrong.empty())
+    return Fault{"distortion", wrong};
   if (rows.empty()) return std::nullopt;
   if (rows.size() == 1)
     return Fault{"zoom", "has one row: expected at least two rows, or no rows for a linear zoom"};
@@ -111,6 +114,10 @@ std::optional<ZoomTable::Fault> ZoomTable::fault(const LensConfig& config) {
   const bool counts = rows[0].count.has_value();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto at = [i](const char* key) { return fmt::format("zoom[{}].{}", i, key); };
+    if (const std::string wrong =
+            rows[i].distortion ? distortion_fault(config.model, *rows[i].distortion) : std::string();
+        !wrong.empty())
+      return Fault{at("distortion"), wrong};
     if (rows[i].count.has_value() != counts)
       return Fault{at("count"), "expected a count in all rows or in no row"};
     if (i == 0) continue;
@@ -165,12 +172,9 @@ Intrinsics ZoomTable::at(double zoom) const {
   zoom = within(zoom);
   if (is_linear()) return {one_.fx * zoom, one_.fy * zoom, one_.cx, one_.cy, one_.distortion};
   const double x = abscissa(zoom);
-  Intrinsics result{std::exp(curves_[0].value(x)),
-                    std::exp(curves_[1].value(x)),
-                    curves_[2].value(x),
-                    curves_[3].value(x),
-                    {}};
-  for (std::size_t i = 0; i < 5; ++i) result.distortion[i] = curves_[4 + i].value(x);
+  Intrinsics result{std::exp(curves_[0].value(x)), std::exp(curves_[1].value(x)), curves_[2].value(x),
+                    curves_[3].value(x), Distortion(one_.distortion.model())};
+  for (std::size_t i = 0; i < result.distortion.size(); ++i) result.distortion[i] = curves_[4 + i].value(x);
   return result;
 }
 
@@ -187,8 +191,8 @@ Eigen::Vector<double, intrinsics_count> ZoomTable::by_row(double zoom, std::size
   const double x = abscissa(within(zoom));
   const std::size_t point = is_reversed_ ? rows_.size() - 1 - row : row;
   const auto lens = numbers(at(zoom));
-  Eigen::Vector<double, intrinsics_count> result;
-  for (int i = 0; i < intrinsics_count; ++i) {
+  Eigen::Vector<double, intrinsics_count> result = Eigen::Vector<double, intrinsics_count>::Zero();
+  for (int i = 0; i < one_.size(); ++i) {
     result[i] = curves_.at(static_cast<std::size_t>(i)).by_point(x, point);
     if (i < 2) result[i] *= lens[i] / rows_.at(point)[i];  // The curve interpolates the logarithm.
   }
@@ -196,12 +200,12 @@ Eigen::Vector<double, intrinsics_count> ZoomTable::by_row(double zoom, std::size
 }
 
 Eigen::Vector<double, intrinsics_count> ZoomTable::by_lens(double zoom) const {
-  Eigen::Vector<double, intrinsics_count> result = Eigen::Vector<double, intrinsics_count>::Ones();
+  Eigen::Vector<double, intrinsics_count> result = Eigen::Vector<double, intrinsics_count>::Zero();
   if (is_linear()) {
+    result.head(one_.size()).setOnes();
     result.head<2>().setConstant(within(zoom));
     return result;
   }
-  result.setZero();
   for (std::size_t row = 0; row < rows_.size(); ++row) {
     const auto& through_row = rows_by_lens_[is_reversed_ ? rows_.size() - 1 - row : row];
     if (!through_row.isZero(0)) result += by_row(zoom, row).cwiseProduct(through_row);
@@ -217,8 +221,7 @@ Eigen::Vector<double, intrinsics_count> ZoomTable::slope(double zoom) const {
     return result;
   }
   const double x = abscissa(zoom), x_slope = by_count_ ? 1 : 1 / zoom;
-  for (int i = 0; i < intrinsics_count; ++i)
-    result[i] = curves_[static_cast<std::size_t>(i)].slope(x) * x_slope;
+  for (int i = 0; i < one_.size(); ++i) result[i] = curves_[static_cast<std::size_t>(i)].slope(x) * x_slope;
   result[0] *= std::exp(curves_[0].value(x)), result[1] *= std::exp(curves_[1].value(x));
   return result;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -23,16 +22,17 @@ struct ZoomRow {
   /// Focal lengths and principal point, px. Default: the values at ratio 1; for fx and fy, the values at
   /// ratio 1 times the ratio.
   std::optional<double> fx, fy, cx, cy;
-  std::optional<std::array<double, 5>>
-      distortion;  ///< Distortion k1, k2, p1, p2, k3; default: the values at ratio 1.
+  std::optional<Distortion> distortion;  ///< Distortion coefficients; default: the values at ratio 1.
 };
 
 /// A zoom lens in a file: parameters at zoom ratio 1 and their change with zoom.
 struct LensConfig {
-  double fx = 800;               ///< Horizontal focal length at ratio 1, px.
-  std::optional<double> fy;      ///< Vertical focal length at ratio 1, px; default: fx.
-  std::optional<double> cx, cy;  ///< Principal point at ratio 1, px; default: the image's middle.
-  std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< Distortion k1, k2, p1, p2, k3 at ratio 1.
+  double fx = 800;                     ///< Horizontal focal length at ratio 1, px.
+  std::optional<double> fy;            ///< Vertical focal length at ratio 1, px; default: fx.
+  std::optional<double> cx, cy;        ///< Principal point at ratio 1, px; default: the image's middle.
+  LensModel model = LensModel::brown;  ///< Lens model at all zoom positions.
+  /// Distortion coefficients at ratio 1. If all are 0, their number need not be that of the model.
+  Distortion distortion;
   std::vector<ZoomRow> zoom;  ///< Zoom table, in order of increasing ratio. Empty: linear zoom.
 };
 
@@ -57,9 +57,10 @@ class ZoomTable {
   struct Fault {
     std::string path, what;  ///< Path of the error, such as "zoom[1].ratio", and the error text.
   };
-  /// Returns the first error in the rows; std::nullopt for valid rows. There must be no row or at least two
+  /// Returns the first error in the lens; std::nullopt for a valid lens. There must be no row or at least two
   /// rows. Ratios and focal lengths must increase from row to row. Either all rows or no rows have a count.
-  /// Counts must either increase or decrease strictly.
+  /// Counts must either increase or decrease strictly. The numbers of distortion coefficients must be that of
+  /// the model.
   [[nodiscard]] static std::optional<Fault> fault(const LensConfig& config);
 
   /// Returns the smallest and the largest zoom position: the range of the rows or, without rows, all positive

@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 Eigen::VectorXd numbers_of(const Intrinsics& lens) {
   Eigen::VectorXd result(intrinsics_count);
   result << lens.fx, lens.fy, lens.cx, lens.cy,
-      Eigen::Map<const Eigen::Vector<double, 5>>(lens.distortion.data());
+      Eigen::Map<const Eigen::Vector<double, Distortion::most>>(lens.distortion.data());
   return result;
 }
 
@@ -121,7 +121,7 @@ void add(Lens& lens, int i, double offset) {
   if (i == 2) lens.cx = *lens.cx + offset;
   if (i == 3) lens.cy = *lens.cy + offset;
   if (i < 4) return;
-  std::optional<std::array<double, 5>> distortion = lens.distortion;
+  std::optional<Distortion> distortion = lens.distortion;
   (*distortion)[static_cast<std::size_t>(i - 4)] += offset;
   lens.distortion = *distortion;
 }
@@ -142,7 +142,7 @@ TEST(Zoom, KnowsHowItsLensChangesWithItsRows) {
     const double at = random.uniform(zoom.first(), zoom.last());
     for (std::size_t row = 0; row < config.zoom.size(); ++row) {
       const auto by_row = zoom.by_row(at, row);
-      for (int i = 0; i < intrinsics_count; ++i) {
+      for (int i = 0; i < 4 + static_cast<int>(config.distortion.size()); ++i) {
         const double step = i < 4 ? 1e-3 : 1e-7;
         Eigen::VectorXd expected = Eigen::VectorXd::Zero(intrinsics_count);
         expected[i] = by_row[i];
@@ -168,7 +168,7 @@ TEST(Zoom, KnowsHowItsLensChangesWithThatAtRatioOne) {
     const ZoomTable zoom(config, 640, 480);
     const double at = zoom.is_linear() ? random.uniform(1, 10) : random.uniform(zoom.first(), zoom.last());
     const auto by_lens = zoom.by_lens(at);
-    for (int i = 0; i < intrinsics_count; ++i) {
+    for (int i = 0; i < 4 + static_cast<int>(config.distortion.size()); ++i) {
       Eigen::VectorXd expected = Eigen::VectorXd::Zero(intrinsics_count);
       expected[i] = by_lens[i];
       const Eigen::VectorXd found = difference(

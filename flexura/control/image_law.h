@@ -11,7 +11,7 @@ namespace flexura {
 struct ImageLawGains {
   /// Rate of the errors' decay, 1/s; > 0. With an exact model, errors decay as exp(-rate t).
   double rate = 4;
-  /// Damping of the least squares, as a share of the root mean square gain of the Jacobian; >= 0.
+  /// Damping of the least squares, as a fraction of the RMS singular value of the Jacobian; >= 0.
   double damping = 0.01;
   double most_step = 0.5;  ///< Largest change of the variables per command, rad; > 0.
 };

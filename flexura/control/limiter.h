@@ -55,8 +55,8 @@ struct LimiterFault {
 ///     the rate limits of bends and stretches.
 ///   - Respects the motors' limits of speed, step rate and acceleration, without backlash, friction and
 ///     rounding. Respects the motors' limits of position, with backlash, friction and rounding.
-///   - Allows the arm to brake to rest within all these limits. With `looks_ahead`, this braking path is free
-///     of contact. The limiter keeps the braking path and follows it if no other command is allowed
+///   - Allows the arm to brake to rest within all these limits. If `looks_ahead` is true, this braking path
+///     is free of contact. The limiter keeps the braking path and follows it if no other command is allowed
 ///     (docs/control.md, "The limiter").
 /// A command that is not finite or does not fit the arm, and every call of fault(), stops the arm. The arm
 /// follows its braking path to rest and stays there until reset().

@@ -18,8 +18,8 @@ enum class ElasticityRule : std::uint8_t {
   ignored,
 };
 
-/// Gains of the law. The defaults satisfy the conditions of the theory. Other values can violate these
-/// conditions, to show the effects.
+/// Gains of the law. The defaults satisfy the conditions of the theory. Other values may violate these
+/// conditions, so that tests and studies can show the effects.
 struct PotentialGains {
   Eigen::Vector2d stiffness = {20, 20};  ///< k_theta and k_q, N m per length (m) and rad; > 0.
   Eigen::Matrix2d damping =

@@ -16,7 +16,7 @@ namespace flexura {
 namespace {
 
 constexpr int places_an_arc = 3;  // Of the error along the arm.
-// Typical distance along the arm by a section's bend, share of the length per radian.
+// Typical position error along the arm per radian of a section's bend, as a fraction of the length.
 constexpr double gain = 1.0 / 3;
 
 Eigen::VectorXd packed(const ArmVariables& variables, const ArmState& state) {
@@ -248,6 +248,7 @@ void PredictiveLaw::solve(const Eigen::VectorXd& sent, const Eigen::VectorXd& ra
       products.segment(k * count, count).noalias() = limit_rows_ * (commands.segment(k * n, n) - sent);
   };
   limited(u, y);
+  active_limit_.reset();
   w_in = w, u_in = u;
   if (project(w_in, u_in) && (y.array() <= limit_rooms_.array()).all()) return;
 
@@ -294,6 +295,11 @@ void PredictiveLaw::solve(const Eigen::VectorXd& sent, const Eigen::VectorXd& ra
         (count == 0 || (y - y_in).cwiseAbs().maxCoeff() < near * T))
       break;
   }
+  // The multipliers of a limit are above 0 where it restricts the commands.
+  if (count == 0) return;
+  Eigen::Index active = 0;
+  const Eigen::VectorXd multipliers = dual_y.reshaped(count, horizon).rowwise().sum();
+  if (multipliers.maxCoeff(&active) > 0) active_limit_ = static_cast<std::size_t>(active);
 }
 
 ArmState PredictiveLaw::step(const PredictiveState& now, const Eigen::MatrixXd& by_command) {

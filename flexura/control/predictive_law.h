@@ -2,6 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "flexura/kinematics/arm_variables.h"
@@ -24,6 +27,7 @@ struct PredictiveLimit {
   Eigen::RowVectorXd by_command;  ///< Derivatives with respect to bend_x, bend_y and stretch of each section.
   /// Distance of the present command `sent` from the limit; negative if `sent` violates the limit.
   double room = 0;
+  std::string name = {};  ///< What is limited, for messages.
 };
 
 /// Input of a step of the law: the state of an arm, and its target from now on.
@@ -70,6 +74,9 @@ class PredictiveLaw {
     const Eigen::VectorXd& found;  ///< Changes of the rates that the solver found.
   };
   [[nodiscard]] Problem problem() const { return {H_, gradient_, changes_}; }
+  /// Returns the index of the linear limit that restricts the last step's commands most; std::nullopt if none
+  /// does.
+  [[nodiscard]] std::optional<std::size_t> active_limit() const { return active_limit_; }
 
  private:
   struct Disc {
@@ -94,6 +101,7 @@ class PredictiveLaw {
   Eigen::VectorXd changes_;              // The changes found.
   Eigen::MatrixXd limit_rows_;           // Of the linear limits, by the variables, each of norm 1.
   Eigen::VectorXd limit_rooms_;          // In every step: rows times (command - sent) must not exceed these.
+  std::optional<std::size_t> active_limit_;
   Eigen::MatrixXd H_;
   Eigen::VectorXd gradient_;
 };

@@ -141,6 +141,7 @@ TEST(PredictiveLaw, KeepsLinearLimits) {
       EXPECT_LE(product(plant.sent), most + 0.01) << "step " << i;
     }
     EXPECT_GE(product(plant.sent), most - 0.01);
+    EXPECT_EQ(law.active_limit(), std::size_t{0});
     // A limit that is broken already is reached again.
     for (int i = 0; i < 150; ++i) {
       PredictiveState now = plant.state(target);

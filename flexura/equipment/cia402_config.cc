@@ -132,7 +132,7 @@ const Table<Cia402Config>& fields_of(const Cia402Config*) {
                   .unit = Unit::second,
                   .range = between(0, 60)})
           .field("host_node", &Config::host_node,
-                 {.meaning = "Node number of the program.", .range = between(1, 127)})
+                 {.meaning = "Node ID of this program on the bus.", .range = between(1, 127)})
           .field(
               "window", &Config::window,
               {.meaning =

@@ -289,7 +289,9 @@ CommandOutcome Cia402Drive::start_targets(std::span<const double> targets, doubl
     axis.progress_time = now, axis.progress_position = bus_.node(i).position;
     CanFrame frame{.id = cob::rpdo2 + bus_.node(i).number};
     append(frame, static_cast<std::uint32_t>(std::max(std::round(speed * config.velocity_unit), 1.0)), 4);
-    if (const auto sent = bus_.send(frame); !sent) return sent;
+    // Nothing acknowledges a speed. Without it, the drive would move at the last speed.
+    for (int copy = 0; copy < 2; ++copy)
+      if (const auto sent = bus_.send(frame); !sent) return sent;
   }
   return Accepted{};
 }
@@ -353,7 +355,8 @@ CommandOutcome Cia402Drive::halt() {
     if (!lost) break;
   }
   is_halting_ = false;
-  if (lost) return *lost;
+  // A drive may still hold a target, which the SYNC of the next reading would start.
+  if (lost) return unusable(*lost);
   return Accepted{};
 }
 

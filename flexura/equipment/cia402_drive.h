@@ -31,7 +31,7 @@ struct Cia402Identity {
 /// called from several threads. halt() interrupts the other functions.
 class Cia402Drive : public DrivePort {
  public:
-  /// Link and clock must outlive this object. Times of readings are on this clock. Throws
+  /// Link and clock must outlive this object. The times of readings are times of `clock`. Throws
   /// std::invalid_argument if the configuration cannot be used.
   Cia402Drive(Link& link, const ClockPort& clock, const Cia402Config& config);
 
@@ -75,6 +75,8 @@ class Cia402Drive : public DrivePort {
 
   // cia402_setup.cc
   CommandOutcome set_up(std::size_t i);
+  CommandOutcome end_motion(std::size_t i);
+  CommandOutcome start_nodes();
   CommandOutcome identify(std::size_t i);
   CommandOutcome map_pdo(std::size_t i, std::uint16_t parameters, std::uint32_t id, std::uint8_t type,
                          const std::vector<std::uint32_t>& objects);

@@ -76,7 +76,81 @@ TEST(Cia402Drive, FollowsCommandsThirtyTimesPerSecond) {
     ASSERT_LT(bench.clock.time, begin + i / 30.0);
     bench.bus.pass(begin + i / 30.0 - bench.clock.time);
   }
-  EXPECT_LE(bench.bus.written - written, 60U * 17);
+  EXPECT_LE(bench.bus.written - written, 60U * 21);
+}
+
+TEST(Cia402Drive, StartMovesNothingThoughATargetArrivedLate) {
+  Cia402Bench bench(2);
+  ASSERT_TRUE(bench.drive.start());
+  ASSERT_TRUE(bench.drive.command(std::vector{1000.0, -500.0}, 2));
+  bench.bus.pass(0.5);
+  ASSERT_TRUE(bench.drive.halt());
+  bench.bus.pass(0.5);
+  const std::vector<double> before = bench.positions();
+  // The cable was out, and the interface sends its last frames now: RPDO 1 with a new setpoint of 2000.
+  for (std::uint32_t node = 1; node <= 2; ++node) {
+    const CanFrame late{.id = cob::rpdo1 + node, .size = 6, .data = {0x3F, 0, 0xD0, 0x07, 0, 0}};
+    (void)bench.device.receive(bytes_of(late), bench.clock.time);
+  }
+  ASSERT_EQ(fault_of(bench.drive.start()), "");
+  bench.bus.pass(1);
+  EXPECT_EQ(bench.positions(), before);
+}
+
+// A node ignores PDOs until it is operational.
+TEST(Cia402Drive, StartRepeatsTheCommandThatMakesNodesOperational) {
+  Cia402Bench bench(2);
+  int lost = 0;
+  bench.bus.passes = [&](const CanFrame& frame) {
+    const bool is_lost = frame.id == cob::nmt && frame.data[0] == 1 && frame.data[1] == 2 && lost < 3;
+    lost += is_lost ? 1 : 0;
+    return !is_lost;
+  };
+  ASSERT_EQ(fault_of(bench.drive.start()), "");
+  EXPECT_EQ(lost, 3);
+  bench.bus.passes = [](const CanFrame& frame) {
+    return frame.id != cob::nmt || frame.data[0] != 1 || frame.data[1] != 2;
+  };
+  EXPECT_THAT(fault_of(bench.drive.start()), HasSubstr("axis 2 (node 2) does not become operational"));
+}
+
+TEST(Cia402Drive, ALostSpeedIsSentAgain) {
+  Cia402Bench bench(1);
+  ASSERT_TRUE(bench.drive.start());
+  ASSERT_TRUE(bench.drive.command(std::vector{1000.0}, 0.5));  // Fast.
+  bench.bus.pass(1);
+  int lost = 0;
+  bench.bus.passes = [&](const CanFrame& frame) { return frame.id != cob::rpdo2 + 1 || ++lost != 1; };
+  ASSERT_TRUE(bench.drive.command(std::vector{0.0}, 4));
+  EXPECT_GT(lost, 1);
+  bench.bus.pass(2);
+  EXPECT_NEAR(bench.positions()[0], 500, 30);
+}
+
+TEST(Cia402Drive, StartEndsTheMotionOfAProgramThatDied) {
+  Cia402Bench bench(2);
+  ASSERT_TRUE(bench.drive.start());
+  ASSERT_TRUE(bench.drive.command(std::vector{4000.0, -4000.0}, 10));
+  bench.bus.pass(1);
+  Cia402Drive next(bench.bus, bench.clock, bench.config);
+  ASSERT_EQ(fault_of(next.start()), "");
+  bench.bus.pass(0.5);
+  const std::vector<double> before = bench.positions();
+  EXPECT_LT(before[0], 3000);
+  bench.bus.pass(1);
+  EXPECT_EQ(bench.positions(), before);
+}
+
+TEST(Cia402Drive, AFailedHaltNeedsAStart) {
+  Cia402Bench bench(2);
+  ASSERT_TRUE(bench.drive.start());
+  bench.bus.is_silent = true;
+  EXPECT_FALSE(bench.drive.halt());
+  bench.bus.is_silent = false;
+  EXPECT_THAT(fault_of(bench.drive.command(std::vector{10.0, 10.0}, 1)), HasSubstr("must be started"));
+  EXPECT_FALSE(bench.drive.read());
+  ASSERT_EQ(fault_of(bench.drive.start()), "");
+  EXPECT_TRUE(bench.drive.read());
 }
 
 TEST(Cia402Drive, ConvertsUnitsAndKeepsLimits) {
@@ -228,6 +302,7 @@ TEST(Cia402Drive, ReportsARestartAndALostBus) {
               HasSubstr("link lost: can:loop: axis 1 (node 1) does not answer"));
   EXPECT_FALSE(bench.drive.halt());
   bench.bus.is_silent = false;
+  ASSERT_EQ(fault_of(bench.drive.start()), "");
   EXPECT_EQ(fault_of(bench.drive.read()), "");
   bench.device.node(1).restart();
   bench.bus.pass(0.01);

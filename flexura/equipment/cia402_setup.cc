@@ -35,15 +35,55 @@ CommandOutcome Cia402Drive::start() {
     axes_[i].last_position.reset();
     axes_[i].word = 0;
   }
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (const auto sent = bus_.send(nmt_frame(NmtCommand::start, bus_.node(i).number)); !sent)
-      return unusable(*sent.fault());
-    bus_.node(i).state = NmtState::operational;  // Until its next heartbeat.
-  }
+  if (const auto started = start_nodes(); !started) return unusable(*started.fault());
   has_pdos_ = true;
+  // A drive may still hold a target of an interrupted command, which the next SYNC would start. These words
+  // replace it. Several, because a frame may be lost.
+  for (std::int64_t tried = 0; tried < config_.tries; ++tried)
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      if (const auto sent = send_word(i, control_word::enable); !sent) return unusable(*sent.fault());
   if (const auto enabled = enable(true); !enabled) return unusable(*enabled.fault());
   is_started_ = true;
   return Accepted{};
+}
+
+// A program that has died may have left a motion.
+CommandOutcome Cia402Drive::end_motion(std::size_t i) {
+  const auto status = bus_.read(i, {0x6041, 0});
+  if (!status) return *status.fault();
+  const auto word = static_cast<std::uint16_t>(status.value().number());
+  const bool may_move =
+      drive_state(word) == DriveState::operation_enabled && (word & status_bit::target_reached) == 0;
+  if (!may_move) return Accepted{};
+  return bus_.write(i, {0x6040, 0}, control_word::quick_stop, 2);
+}
+
+// A node ignores PDOs until it is operational, and the command to become operational may be late or lost.
+// Only a heartbeat shows its state.
+CommandOutcome Cia402Drive::start_nodes() {
+  for (std::size_t i = 0; i < axes_.size(); ++i) bus_.node(i).state = NmtState::pre_operational;
+  const double begin = bus_.now(), end = begin + std::max(config_.power_timeout, 2.5 * config_.heartbeat);
+  double next = begin;
+  for (;;) {
+    std::optional<std::size_t> waiting;
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      if (bus_.node(i).state != NmtState::operational) waiting = i;
+    if (!waiting) return Accepted{};
+    const double now = bus_.now();
+    if (now > end)
+      return bus_.fault(*waiting, FaultKind::refused,
+                        "does not become operational, or sends no heartbeat; check object 0x1017");
+    if (now >= next) {
+      keep_alive();
+      for (std::size_t i = 0; i < axes_.size(); ++i)
+        if (bus_.node(i).state != NmtState::operational)
+          if (const auto sent = bus_.send(nmt_frame(NmtCommand::start, bus_.node(i).number)); !sent)
+            return sent;
+      // A node answers by its next heartbeat.
+      next = now + std::max(config_.answer_timeout, 1.5 * config_.heartbeat);
+    }
+    if (const auto paused = bus_.pause(cia402_poll_interval); !paused) return paused;
+  }
 }
 
 CommandOutcome Cia402Drive::identify(std::size_t i) {
@@ -128,6 +168,7 @@ CommandOutcome Cia402Drive::set_up(std::size_t i) {
     if (const auto done = write_checked(i, object, value, 4); !done) return done;
   // A quick stop must leave the motors on, so that the tendons keep their tension.
   if (const auto done = write_checked(i, {0x605A, 0}, 6, 2); !done) return done;
+  if (const auto done = end_motion(i); !done) return done;
   if (const auto done = write_optional(i, {0x6085, 0}, accelerations(axis.stop_deceleration), 4); !done)
     return done;
   // Without heartbeats of the program, and in the NMT state "stopped": quick stop.

@@ -35,9 +35,11 @@ std::string firmware_text(std::string_view text) {
 }  // namespace
 
 CommandOutcome GrblDrive::connect() {
+  const unsigned interrupts = session_.interrupts();
   const std::scoped_lock lock(mutex_);
-  begin();
+  session_.begin(interrupts);
   is_connected_ = false, is_known_ = false;
+  why_unknown_.clear();
   auto reset = session_.reset(config_.connect_timeout);
   if (!reset) return reset;
   (void)session_.take_alarm();
@@ -119,7 +121,7 @@ CommandOutcome GrblDrive::check_axes() {
     if (!is_countable)
       return refuse(
           fmt::format("setting ${} is {:g} steps/mm; expected above 0, at most {:g}, because positions "
-                      "have 3 decimals: a \"mm\" of the controller need not be a real millimetre, so 100 is "
+                      "have 3 decimals. A \"mm\" of the controller need not be a real millimetre, so 100 is "
                       "a good choice for all axes",
                       100 + axis, per_mm, most_per_mm));
     if (!(rate > 0 && acceleration > 0 && std::isfinite(rate) && std::isfinite(acceleration)))
@@ -146,21 +148,23 @@ GrblIdentity GrblDrive::identity() const {
 }
 
 Outcome<GrblStatus> GrblDrive::status() {
+  const unsigned interrupts = session_.interrupts();
   const std::scoped_lock lock(mutex_);
-  begin();
+  session_.begin(interrupts);
   if (!is_connected_) return refuse("not connected");
   return session_.status();
 }
 
 CommandOutcome GrblDrive::home(std::span<const double> positions) {
+  const unsigned interrupts = session_.interrupts();
   const std::scoped_lock lock(mutex_);
   if (positions.size() != axes() ||
       !std::ranges::all_of(positions, [](double one) { return std::isfinite(one); }))
     return refuse("homing needs one finite position per axis");
-  begin();
+  session_.begin(interrupts);
   if (!is_connected_) return refuse("not connected");
   (void)check_usable();  // An alarm does not prevent homing.
-  is_known_ = false;
+  lose_position("homing has not ended");
   is_homing_ = true;
   const auto answer = session_.ask("$H\n", config_.homing_timeout);
   is_homing_ = false;
@@ -187,11 +191,12 @@ CommandOutcome GrblDrive::home(std::span<const double> positions) {
 }
 
 CommandOutcome GrblDrive::set_positions(std::span<const double> positions) {
+  const unsigned interrupts = session_.interrupts();
   const std::scoped_lock lock(mutex_);
   if (positions.size() != axes() ||
       !std::ranges::all_of(positions, [](double one) { return std::isfinite(one); }))
     return refuse("a zero needs one finite position per axis");
-  begin();
+  session_.begin(interrupts);
   auto usable = check_usable();
   if (!usable) return usable;
   const auto asked = report();
@@ -207,8 +212,9 @@ CommandOutcome GrblDrive::set_positions(std::span<const double> positions) {
 }
 
 CommandOutcome GrblDrive::unlock() {
+  const unsigned interrupts = session_.interrupts();
   const std::scoped_lock lock(mutex_);
-  begin();
+  session_.begin(interrupts);
   if (!is_connected_) return refuse("not connected");
   (void)check_usable();
   const bool was_known = is_known_;
@@ -216,7 +222,8 @@ CommandOutcome GrblDrive::unlock() {
   auto reset = session_.reset(config_.connect_timeout);
   if (!reset) return reset;
   const auto alarm = session_.take_alarm();
-  is_known_ = was_known && !alarm;
+  is_known_ = was_known;
+  if (alarm) lose_position("after an alarm");
   const auto answer = session_.ask("$X\n");
   if (!answer) return *answer.fault();
   if (answer.value().error != 0)

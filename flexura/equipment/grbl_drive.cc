@@ -58,12 +58,20 @@ PortFault GrblDrive::refuse(std::string_view what) const {
   return {FaultKind::refused, fmt::format("{}: {}", link_->name(), what)};
 }
 
+void GrblDrive::lose_position(std::string reason) {
+  if (is_known_) why_unknown_ = std::move(reason);
+  is_known_ = false;
+}
+
+PortFault GrblDrive::unknown_position() const {
+  return refuse(fmt::format("the position is unknown{}: home the controller or set its position",
+                            why_unknown_.empty() ? "" : " (" + why_unknown_ + ")"));
+}
+
 double GrblDrive::setting(int number) const {
   const auto found = std::ranges::find(settings_, number, &std::pair<int, double>::first);
   return found == settings_.end() ? 0 : found->second;
 }
-
-void GrblDrive::begin() { session_.begin(session_.interrupts()); }
 
 bool GrblDrive::knows_position() const {
   const std::scoped_lock lock(mutex_);
@@ -75,10 +83,10 @@ CommandOutcome GrblDrive::check_usable() {
   if (!is_connected_) return refuse("not connected");
   auto drained = session_.drain();
   if (!drained) return drained;
-  if (session_.take_restart()) is_known_ = false;
+  if (session_.take_restart()) lose_position("the controller has restarted");
   if (const auto alarm = session_.take_alarm()) alarm_ = alarm;
   if (alarm_) {
-    if (*alarm_ != soft_limit_alarm) is_known_ = false;
+    if (*alarm_ != soft_limit_alarm) lose_position("after an alarm");
     return refuse(fmt::format("the controller is in alarm{}: clear its cause and unlock it{}",
                               *alarm_ == unknown_alarm
                                   ? std::string()
@@ -141,7 +149,7 @@ Outcome<GrblDrive::Report> GrblDrive::checked_report() {
       return asked;
     }
     if (now.state == GrblState::jog && path_.can_be_at(now.steps, off_line, now.received)) {
-      path_.report(now.steps, now.asked);
+      path_.report(now.steps, now.asked, now.received);
       return asked;
     }
     if (now.state == GrblState::idle && now.asked < accepted_at_ + start_time) {
@@ -157,7 +165,7 @@ Outcome<GrblDrive::Report> GrblDrive::checked_report() {
           "controller)",
           positions_text(path_.end()), positions_text(now.steps));
       // Elsewhere, the controller may count from another zero after a restart that was not heard of.
-      is_known_ = path_.can_be_at(now.steps, off_line, now.received);
+      if (!path_.can_be_at(now.steps, off_line, now.received)) lose_position(places);
       path_.rest(now.steps, now.asked);
       if (!is_known_) return refuse(places + ": the position is lost, home it or set its position");
       return refuse(places + ": the controller has not executed the motion");
@@ -196,7 +204,11 @@ CommandOutcome GrblDrive::stop_and_locate(bool is_anywhere) {
       auto usable = check_state(now.state);
       if (!usable) return usable;
       if (resting == now.steps) {
-        is_known_ = is_known_ && (is_anywhere || path_.can_be_at(now.steps, off_line, now.received));
+        if (!is_anywhere && !path_.can_be_at(now.steps, off_line, now.received))
+          lose_position(
+              fmt::format("the motors stopped at {} (steps of the controller), which is not on the "
+                          "commanded path to {}",
+                          positions_text(now.steps), positions_text(path_.end())));
         path_.stop(now.steps, now.asked);
         return Accepted{};
       }
@@ -207,7 +219,7 @@ CommandOutcome GrblDrive::stop_and_locate(bool is_anywhere) {
     const auto canceled = session_.act(grbl::cancel_jog);
     if (!canceled) return canceled;
   }
-  is_known_ = false;
+  lose_position("the controller has been reset, because the motors did not stop");
   (void)session_.act(grbl::hold);
   (void)session_.act(grbl::reset);
   return refuse(
@@ -246,10 +258,10 @@ CommandOutcome GrblDrive::send_motion(const std::vector<std::int64_t>& target, d
   if (!answer) {
     // Whether the motion has begun is unknown.
     const PortFault fault = *answer.fault();
-    if (session_.take_restart()) is_known_ = false;
+    if (session_.take_restart()) lose_position("the controller has restarted");
     path_.add(target, feed, before);
     if (session_.is_interrupted()) return fault;
-    begin();
+    session_.begin(session_.interrupts());
     auto stopped = brake();
     if (!stopped) return stopped;
     return PortFault{fault.kind, fault.what + "; the motors have been stopped"};
@@ -267,16 +279,17 @@ CommandOutcome GrblDrive::send_motion(const std::vector<std::int64_t>& target, d
 }
 
 CommandOutcome GrblDrive::command(std::span<const double> targets, double duration) {
+  const unsigned interrupts = session_.interrupts();
   const std::scoped_lock lock(mutex_);
   if (targets.size() != axes())
     return refuse(fmt::format("a command has {} targets; expected {}", targets.size(), axes()));
   if (!std::ranges::all_of(targets, [](double one) { return std::isfinite(one); }) ||
       !std::isfinite(duration) || duration < 0)
     return refuse("targets and the duration must be finite, and the duration not negative");
-  begin();
+  session_.begin(interrupts);
   auto usable = check_usable();
   if (!usable) return usable;
-  if (!is_known_) return refuse("the position is unknown: home the controller or set its position");
+  if (!is_known_) return unknown_position();
   const std::vector<std::int64_t> target = clamped(targets);
   if (path_.lag(clock_.now()) > 0 && clock_.now() > checked_at_ + report_period) {
     const auto checked = checked_report();
@@ -285,6 +298,7 @@ CommandOutcome GrblDrive::command(std::span<const double> targets, double durati
   if (path_.lag(clock_.now()) > config_.most_lag) {
     auto stopped = brake();
     if (!stopped) return stopped;
+    if (!is_known_) return unknown_position();
   }
   if (target == path_.end()) return Accepted{};
   return send_motion(target, path_.feed_to(target, duration, config_.lead, clock_.now()));
@@ -308,22 +322,23 @@ CommandOutcome GrblDrive::halt() {
   if (stopped.fault()->kind == FaultKind::link_lost) {
     (void)session_.act(grbl::hold);
     (void)session_.act(grbl::reset);
-    is_known_ = false;
+    lose_position("the controller has been reset, because it did not answer");
   }
   return stopped;
 }
 
 Outcome<DriveReading> GrblDrive::read() {
+  const unsigned interrupts = session_.interrupts();
   const std::scoped_lock lock(mutex_);
-  begin();
+  session_.begin(interrupts);
   const auto usable = check_usable();
   if (!usable) return *usable.fault();
-  if (!is_known_) return refuse("the position is unknown: home the controller or set its position");
+  if (!is_known_) return unknown_position();
   const auto checked = checked_report();
   if (!checked) return *checked.fault();
   const Report& now = checked.value();
   if (session_.take_restart() || !is_known_) {
-    is_known_ = false;
+    lose_position("the controller has restarted");
     return refuse("the controller has restarted, its position is lost: home it or set its position");
   }
   DriveReading reading;

@@ -79,12 +79,14 @@ class GrblDrive : public DrivePort {
     double asked = 0, received = 0;   // s
   };
 
-  void begin();
   [[nodiscard]] CommandOutcome check_settings(const std::vector<GrblMessage>& said);
   [[nodiscard]] CommandOutcome check_axes();
   [[nodiscard]] CommandOutcome check_usable();
   [[nodiscard]] CommandOutcome check_state(GrblState state);
   [[nodiscard]] PortFault refuse(std::string_view what) const;
+  // Makes the position unknown, for this reason.
+  void lose_position(std::string reason);
+  [[nodiscard]] PortFault unknown_position() const;
   [[nodiscard]] double setting(int number) const;
   // Returns a report whose position is on whole steps.
   [[nodiscard]] Outcome<Report> report();
@@ -114,6 +116,7 @@ class GrblDrive : public DrivePort {
   bool is_connected_ = false, is_known_ = false, is_zero_forced_ = false;
   double checked_at_ = 0;   // Time of the last report.
   double accepted_at_ = 0;  // Time of the last accepted motion.
+  std::string why_unknown_;
   std::optional<int> alarm_;
   std::atomic<bool> is_homing_ = false;
 };

@@ -16,7 +16,7 @@ void GrblPath::rest(std::vector<std::int64_t> position, double now) {
   if (!legs_.empty()) rests_at_ = std::min(rests_at_, now);
   legs_.clear();
   end_ = std::move(position);
-  passed_ = 0, reported_at_ = now, ends_at_ = now;
+  passed_ = 0, spread_ = 0, reported_at_ = now, ends_at_ = now;
 }
 
 void GrblPath::stop(std::vector<std::int64_t> position, double now) {
@@ -67,40 +67,56 @@ void GrblPath::add(std::vector<std::int64_t> target, double feed, double now) {
   ends_at_ += leg.length / reached;
   rests_at_ = ends_at_ + 0.5 * reached / leg.acceleration;
   end_ = std::move(target);
-  if (legs_.empty()) passed_ = 0, reported_at_ = now;
+  if (legs_.empty()) passed_ = 0, spread_ = 0, reported_at_ = now;
   legs_.push_back(std::move(leg));
+  forget_passed_legs();
+}
+
+// A controller accepts a line when its queue has a place, so the lines before a full queue are done. Without
+// this, a controller that only moves by a few steps might be at the first of them for ever.
+void GrblPath::forget_passed_legs() {
+  for (; legs_.size() > most_legs; legs_.pop_front()) {
+    spread_ = std::max(0.0, spread_ - (1 - passed_) * legs_.front().length);
+    passed_ = 0;
+  }
 }
 
 double GrblPath::lag(double now) const { return legs_.empty() ? 0 : std::max(ends_at_ - now, 0.0); }
 
-// Returns the place nearest to a position. Legs may cover each other, as on the way there and back, so places
-// behind the last report count only if there is no other near one.
-GrblPath::Place GrblPath::place_of(std::span<const std::int64_t> position, double tolerance) const {
-  Place best{.error = std::numeric_limits<double>::infinity()};
-  bool is_best_ahead = false;
-  for (std::size_t k = 0; k < legs_.size(); ++k) {
-    const Leg& leg = legs_[k];
-    double along = 0;
-    for (std::size_t i = 0; i < position.size(); ++i) {
-      const double scale = axes_.per_mm[i] * axes_.per_mm[i];
-      along += static_cast<double>(position[i] - leg.from[i]) * static_cast<double>(leg.to[i] - leg.from[i]) /
-               scale;
-    }
-    Place place{.leg = k, .share = std::clamp(along / (leg.length * leg.length), 0.0, 1.0)};
-    for (std::size_t i = 0; i < position.size(); ++i) {
-      const double there =
-          static_cast<double>(leg.from[i]) + place.share * static_cast<double>(leg.to[i] - leg.from[i]);
-      place.error = std::max(place.error, std::abs(static_cast<double>(position[i]) - there));
-    }
-    const bool is_ahead = place.error <= tolerance && way_to(place) >= -margin_of(tolerance);
-    if (is_ahead != is_best_ahead ? is_ahead : place.error < best.error)
-      best = place, is_best_ahead = is_ahead;
+// Returns the place on a leg that is nearest to a position.
+GrblPath::Place GrblPath::place_on(std::size_t leg, std::span<const std::int64_t> position) const {
+  const Leg& line = legs_[leg];
+  double along = 0;
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const double scale = axes_.per_mm[i] * axes_.per_mm[i];
+    along += static_cast<double>(position[i] - line.from[i]) *
+             static_cast<double>(line.to[i] - line.from[i]) / scale;
   }
-  if (!legs_.empty()) return best;
-  best.error = 0;
-  for (std::size_t i = 0; i < position.size(); ++i)
-    best.error = std::max(best.error, std::abs(static_cast<double>(position[i] - end_[i])));
-  return best;
+  Place place{.leg = leg, .share = std::clamp(along / (line.length * line.length), 0.0, 1.0)};
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const double there =
+        static_cast<double>(line.from[i]) + place.share * static_cast<double>(line.to[i] - line.from[i]);
+    place.error = std::max(place.error, std::abs(static_cast<double>(position[i]) - there));
+  }
+  return place;
+}
+
+// Returns all places of the path near a position that are not behind the last report and can be reached by
+// the time `now`, in the order of the path.
+std::vector<GrblPath::Place> GrblPath::places_of(std::span<const std::int64_t> position, double tolerance,
+                                                 double now) const {
+  double fastest = 0;
+  for (const Leg& leg : legs_) fastest = std::max(fastest, leg.speed);
+  const double margin = margin_of(tolerance);
+  const double farthest = spread_ + 1.1 * fastest * (now - reported_at_) + margin;
+  std::vector<Place> places;
+  double before = -passed_ * (legs_.empty() ? 0 : legs_.front().length);  // The way to a leg.
+  for (std::size_t k = 0; k < legs_.size(); before += legs_[k++].length) {
+    const Place place = place_on(k, position);
+    const double way = before + place.share * legs_[k].length;
+    if (place.error <= tolerance && way >= -margin && way <= farthest) places.push_back(place);
+  }
+  return places;
 }
 
 // Returns the way from the last report to a place, mm.
@@ -118,27 +134,33 @@ double GrblPath::margin_of(double tolerance) const {
   return margin;
 }
 
-bool GrblPath::can_be_at(std::span<const std::int64_t> position, double tolerance, double now) const {
-  const Place place = place_of(position, tolerance);
-  if (place.error > tolerance) return false;
-  if (legs_.empty()) return true;
-  const double fastest = std::ranges::max_element(legs_, {}, &Leg::speed)->speed;
-  const double way = way_to(place), margin = margin_of(tolerance);
-  return way >= -margin && way <= 1.1 * fastest * (now - reported_at_) + margin;
+// Returns the time from a place to the end, without braking, s.
+double GrblPath::time_from(const Place& place) const {
+  double time = -place.share * legs_[place.leg].length / legs_[place.leg].speed;
+  for (std::size_t k = place.leg; k < legs_.size(); ++k) time += legs_[k].length / legs_[k].speed;
+  return time;
 }
 
-void GrblPath::report(std::span<const std::int64_t> position, double now) {
-  reported_at_ = now;
-  if (legs_.empty()) return;
+bool GrblPath::can_be_at(std::span<const std::int64_t> position, double tolerance, double now) const {
+  if (!legs_.empty()) return !places_of(position, tolerance, now).empty();
+  for (std::size_t i = 0; i < position.size(); ++i)
+    if (std::abs(static_cast<double>(position[i] - end_[i])) > tolerance) return false;
+  return true;
+}
+
+void GrblPath::report(std::span<const std::int64_t> position, double asked, double received) {
   constexpr double rounding = 2;  // Steps.
-  const Place place = place_of(position, rounding);
-  legs_.erase(legs_.begin(), legs_.begin() + static_cast<std::ptrdiff_t>(place.leg));
-  passed_ = place.share;
-  double left = -passed_ * legs_.front().length / legs_.front().speed;
-  for (const Leg& leg : legs_) left += leg.length / leg.speed;
+  const std::vector<Place> places = places_of(position, rounding, received);
+  if (places.empty()) return;
+  const auto surprise = [&](const Place& place) { return std::abs(asked + time_from(place) - ends_at_); };
+  const double left = time_from(*std::ranges::min_element(places, {}, surprise));
+  spread_ = way_to(places.back()) - way_to(places.front());
+  passed_ = places.front().share;
+  reported_at_ = asked;
+  legs_.erase(legs_.begin(), legs_.begin() + static_cast<std::ptrdiff_t>(places.front().leg));
   if (left <= 0) return;
-  rests_at_ += now + left - ends_at_;
-  ends_at_ = now + left;
+  rests_at_ += asked + left - ends_at_;
+  ends_at_ = asked + left;
 }
 
 }  // namespace flexura

@@ -43,10 +43,16 @@ class GrblPath {
   /// Returns true if a moving controller can be at this position, steps, at time `now`, s. The position must
   /// be within `tolerance` steps of the path, not behind an earlier report, and reachable by this time.
   [[nodiscard]] bool can_be_at(std::span<const std::int64_t> position, double tolerance, double now) const;
-  /// Stores a plausible position, steps, reported at time `now`, s, or later.
-  void report(std::span<const std::int64_t> position, double now);
+  /// Returns the number of straight lines that the controller has not yet reported as completed; at most
+  /// 1000.
+  [[nodiscard]] std::size_t legs() const { return legs_.size(); }
+  /// Stores a plausible position, steps, in a report that was requested at time `asked` and received at time
+  /// `received`, s.
+  void report(std::span<const std::int64_t> position, double asked, double received);
 
  private:
+  /// Largest number of lines in the queue of a controller: that of grblHAL.
+  static constexpr std::size_t most_legs = 1000;
   struct Leg {
     std::vector<std::int64_t> from, to;
     double length = 0, speed = 0, acceleration = 0;  // mm, mm/s, mm/s^2
@@ -57,14 +63,21 @@ class GrblPath {
     double error = 0;  // Largest distance from the leg, steps.
   };
   [[nodiscard]] Leg leg_to(std::span<const std::int64_t> target) const;
-  [[nodiscard]] Place place_of(std::span<const std::int64_t> position, double tolerance) const;
+  [[nodiscard]] Place place_on(std::size_t leg, std::span<const std::int64_t> position) const;
+  [[nodiscard]] std::vector<Place> places_of(std::span<const std::int64_t> position, double tolerance,
+                                             double now) const;
   [[nodiscard]] double way_to(const Place& place) const;
+  [[nodiscard]] double time_from(const Place& place) const;
+  void forget_passed_legs();
   [[nodiscard]] double margin_of(double tolerance) const;
 
   GrblAxes axes_;
   std::deque<Leg> legs_;
   std::vector<std::int64_t> end_;
-  double passed_ = 0;                                           // Share of the first leg at the last report.
+  double passed_ = 0;  // Share of the first leg at the last report.
+  // Legs may cover each other, so a report may fit several places: passed_ is the first of them, and the last
+  // is this way behind it, mm.
+  double spread_ = 0;
   double reported_at_ = 0;                                      // Time of the last report or rest.
   double ends_at_ = 0;                                          // When the end is passed, without braking.
   double rests_at_ = -std::numeric_limits<double>::infinity();  // When the end is reached, with braking.

@@ -41,7 +41,9 @@ CommandOutcome GrblSession::send(const std::string& line) {
   const std::scoped_lock lock(sending_);
   if (is_interrupted()) return interrupted();
   pending_.push_back(line.size());
-  return link_.write(line);
+  auto sent = link_.write(line);
+  if (!sent) is_out_of_step_ = true;  // A part of the line may have been sent.
+  return sent;
 }
 
 void GrblSession::take(std::string_view bytes) {

@@ -41,8 +41,8 @@ class GrblSession {
   /// Sends lines, each as soon as it fits into the window. Waits for all answers, for each at most the answer
   /// timeout. Returns the error code of the first refused line, or 0.
   Outcome<int> stream(std::span<const std::string> lines);
-  /// Requests a new status report. If answers were lost before, this function first calls resynchronize().
-  /// With `is_urgent`, this function does not call resynchronize(), so the result may be an older report.
+  /// Requests a new status report. If answers were lost before, this function first calls resynchronize(). If
+  /// `is_urgent` is true, this function does not call resynchronize(), so the result may be an older report.
   Outcome<GrblStatus> status(bool is_urgent = false);
   /// Processes messages of the controller for `duration` s.
   CommandOutcome listen(double duration);
@@ -62,7 +62,8 @@ class GrblSession {
   /// Sends a realtime byte, and ends the waits of the call in progress. No line is sent until begin() is
   /// called. May be called from any thread.
   CommandOutcome interrupt(char byte);
-  /// Returns the number of calls of interrupt().
+  /// Returns the number of calls of interrupt(). A caller reads it before it waits for its lock. If a halt
+  /// comes during the wait, the number changes and the call ends.
   [[nodiscard]] unsigned interrupts() const { return interrupts_; }
   /// Allows sending again after interrupt(), unless interrupt() has been called more than `known` times.
   void begin(unsigned known) { begun_ = known, is_stopping_ = false; }

@@ -76,7 +76,7 @@ class DescriptorLink : public Link {
         const double left = std::chrono::duration<double>(end - Clock::now()).count();
         if (left <= 0)
           return PortFault{FaultKind::link_lost,
-                           fmt::format("{}: the device takes no bytes for {:g} s", name_, write_timeout_)};
+                           fmt::format("{}: the device accepted no bytes for {:g} s", name_, write_timeout_)};
         (void)wait_for(descriptor_.get(), POLLOUT, left);
       } else if (errno == ENOBUFS) {
         // The queue of a CAN interface is full, often with only 10 frames. The socket is writable all the
@@ -84,7 +84,7 @@ class DescriptorLink : public Link {
         if (std::chrono::duration<double>(end - Clock::now()).count() <= 0)
           return PortFault{
               FaultKind::link_lost,
-              fmt::format("{}: the bus takes no frames for {:g} s; are its speed, its wiring and its "
+              fmt::format("{}: the bus accepted no frames for {:g} s; are its speed, its wiring and its "
                           "terminators right, and is a device switched on?",
                           name_, write_timeout_)};
         (void)::poll(nullptr, 0, 1);

@@ -22,7 +22,7 @@ Table<Turn> onvif_turn_table(const char* name, const char* meaning, const char* 
                              const char* default_text) {
   return Table<Turn>(name, meaning)
       .field("per_degree", &Turn::per_degree,
-             {.meaning = fmt::format("Positions per degree. Below 0 if positions grow {}.", sign),
+             {.meaning = fmt::format("Positions per degree. Negative if positions increase {}.", sign),
               .range = between(-1e4, 1e4),
               .default_text = default_text})
       .field("zero", &Turn::zero,

@@ -42,7 +42,7 @@ class V4l2Fake : public V4l2Calls {
   void damage(std::uint32_t count);
   /// Disconnects the device (false) or connects it again (true).
   void set_plugged(bool is_plugged);
-  /// While true, the device takes no pictures.
+  /// While `is_silent` is true, the device delivers no pictures.
   void set_silent(bool is_silent);
   /// Adds or replaces the control with the number `id` (V4L2_CID_...).
   void set_control(std::uint32_t id, const FakeControl& control);

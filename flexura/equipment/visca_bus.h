@@ -62,7 +62,7 @@ class ViscaBus {
   /// Sends an inquiry and waits for an answer with `size` bytes of data.
   [[nodiscard]] Outcome<Answer> inquire(int address, std::string_view body, std::size_t size);
 
-  /// Progress of an accepted command. `unknown`: the command was too long ago.
+  /// Progress of an accepted command. `unknown`: the command is too old.
   enum class Progress { running, ended, failed, unknown };
   [[nodiscard]] Progress progress(std::uint64_t number) const;
   /// Returns the head's command buffer (VISCA socket) that holds a running command, if known.

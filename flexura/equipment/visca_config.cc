@@ -22,7 +22,7 @@ template <class Turn>
 Table<Turn> visca_turn_table(const char* name, const char* meaning, const char* sign) {
   return Table<Turn>(name, meaning)
       .field("counts_per_degree", &Turn::counts_per_degree,
-             {.meaning = fmt::format("Counts per degree. Below 0 if counts grow {}.", sign),
+             {.meaning = fmt::format("Counts per degree. Negative if counts increase {}.", sign),
               .range = between(-1e4, 1e4)})
       .field("zero", &Turn::zero, {.meaning = "Count at the head's angle 0.", .range = visca_count_range})
       .field("limits", &Turn::limits,

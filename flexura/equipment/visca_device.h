@@ -79,8 +79,8 @@ class ViscaDevice : public ServedDevice {
   /// Makes a device without heads: see add().
   explicit ViscaDevice(ViscaFraming framing) : framing_(framing) {}
 
-  /// Adds a head to the end of the chain, at most 7. Returns its index. Heads at a network address have
-  /// address 1. Heads on a serial line have no address until they are numbered. `motors` null:
+  /// Adds a head to the end of the chain, at most 7. Returns its index. A head that is connected by network
+  /// has the VISCA address 1. Heads on a serial line have no address until they are numbered. `motors` null:
   /// SteadyViscaMotors.
   std::size_t add(const ViscaHeadModel& model, std::unique_ptr<ViscaMotors> motors = nullptr);
 

@@ -6,7 +6,7 @@
 
 namespace flexura {
 
-/// Real time since the construction of the clock, s. Changes of the system's date do not affect it.
+/// Real time since the construction of the clock, s. Changes of the system's date do not affect this clock.
 class WallClock : public ClockPort {
  public:
   /// While wait_until() waits, it calls `while_waiting` at least every `interval` s, > 0.

@@ -14,8 +14,8 @@ namespace flexura {
 /// shape, m. If `sigma` is smaller than the distance between markers, matches bands by position and colour
 /// with the bands of other observations, or with the markers of the prior. Omits bands without a counterpart,
 /// which are false detections or are hidden in another picture. If `sigma` is larger, and all observations
-/// show equally many bands, matches bands by their index. The result is empty if no match is possible. It
-/// omits markers that were observed only once, unless their position is known.
+/// show equally many bands, matches bands by their index. The result is empty if no match is possible. The
+/// result omits markers with an unknown position that were observed only once.
 [[nodiscard]] std::vector<BandObservation> match_bands(const ShapePrior& prior, const Shape& shape,
                                                        double sigma,
                                                        std::span<const Observation> observations);

@@ -29,10 +29,10 @@ struct DirectionAngles {
 [[nodiscard]] DirectionAngles angles_of_planes(double alpha_1, double alpha_2);
 
 /// Returns the angles from two pictures by the paper's method, at `count` points evenly spaced along the arm.
-/// It assumes that each image is a parallel projection along the camera's axis. `front` looks roughly along
-/// Z, and `side` roughly along X. Corresponding points are found by correspondence(). The result is empty if
-/// the pictures have fewer than 8 points in common. With a real perspective camera, the error is several
-/// degrees (docs/estimation.md).
+/// The method assumes that each image is a parallel projection along the camera's axis. `front` looks roughly
+/// along Z, and `side` roughly along X. Corresponding points are found by correspondence(). The result is
+/// empty if the pictures have fewer than 8 points in common. With a real perspective camera, the error is
+/// several degrees (docs/estimation.md).
 [[nodiscard]] std::vector<DirectionAngles> plane_angles(const Observation& front, const Observation& side,
                                                         std::size_t count);
 

@@ -74,12 +74,12 @@ struct Observation {
   std::vector<SeenMarker> markers;   ///< Identified markers.
   std::vector<SeenBand> bands = {};  ///< Bands in any order; the estimator identifies them.
   ViewPrior view_prior = {};         ///< Prior of the view's error.
-  /// Points of the silhouette where no axis was found, in any order. They are used for arms with known
-  /// radius.
+  /// Points of the silhouette where no axis was found, in any order. These points are used for arms with
+  /// known radius.
   std::vector<SeenBorder> borders = {};
   /// The two edges of the tube, where both are visible. In the picture, the first edge is right of the
-  /// direction from base to tip, and the second is left. These are measured points of the tube, not of the
-  /// backbone.
+  /// direction from base to tip, and the second is left. The edges are measured points of the tube, not of
+  /// the backbone.
   std::array<std::vector<CurvePoint>, 2> edges = {};
   ErrorReach reach = {};  ///< Correlation lengths of the points' errors.
   /// Sample points of the arm's foreground, px; empty if not known.

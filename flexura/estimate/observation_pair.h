@@ -23,9 +23,9 @@ using ObservationPair = std::array<std::size_t, 2>;
 
 /// Returns all observations with their points in a common order along the arm. The second observation of the
 /// pair keeps its order or, with `against`, is reversed. The other observations are ordered like the points
-/// that the pair then triangulates. With `from_base`, the pair's order begins at the base, and other
-/// observations with a visible base keep their order. Without `from_base`, the first of all observations
-/// keeps its order: if it was reversed, all observations are reversed again.
+/// that the pair then triangulates. If `from_base` is true, the pair's order begins at the base. Other
+/// observations in which the base is visible then keep their order. If `from_base` is false, the first of all
+/// observations keeps its order. If the first observation was reversed, all observations are reversed again.
 [[nodiscard]] std::vector<Observation> run_alike(std::vector<Observation> observations,
                                                  const ObservationPair& pair, bool against, bool from_base);
 

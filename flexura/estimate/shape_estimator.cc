@@ -16,7 +16,9 @@
 #include "flexura/base/degree.h"
 #include "flexura/estimate/axis_beginning.h"
 #include "flexura/estimate/band_match.h"
+#include "flexura/estimate/hidden_tip.h"
 #include "flexura/estimate/picture_observation.h"
+#include "flexura/estimate/section_groups.h"
 #include "flexura/estimate/shape_search.h"
 #include "flexura/estimate/shape_silhouette.h"
 #include "flexura/estimate/shape_start.h"
@@ -131,7 +133,7 @@ bool indicates_cameras(const ShapeFit& fit) {
 
 std::string elsewhere(std::size_t picture, const ViewError& error) {
   return fmt::format(
-      "picture {} would need a camera that is rotated by {} degrees and {} % {} in focal length, far more "
+      "picture {} fits only if its camera is rotated by {} degrees and its focal length is {} % {}, far more "
       "than its prior allows",
       picture + 1, bounded_text(error.turn.norm() / degree, 180),
       bounded_text(100 * std::abs(std::expm1(error.focal)), 100, 3), error.focal < 0 ? "shorter" : "longer");
@@ -174,6 +176,26 @@ ShapeEstimate unseen(Shape shape) {
   return none;
 }
 
+// Pictures do not show each of many short sections, and each try costs more with more unknowns: groups of
+// sections are searched, and then all sections are fitted from there.
+ShapeSearch::Result searched(const ShapePrior& prior, const EstimatorConfig& config, ShapeDescent& descent,
+                             const std::vector<Observation>& observations) {
+  constexpr std::size_t many = 40, few = 30;
+  if (prior.arm.sections.size() <= many)
+    return ShapeSearch(prior, config.most_iterations, config.most_rms, descent).best(observations);
+  const ShapePrior grouped = with_grouped_sections(prior, few);
+  ShapeSearch::Result result =
+      ShapeSearch(grouped, config.most_iterations, config.most_rms, descent).best(observations);
+  const Shape start = without_groups(prior, result.fit.shape, few);
+  if (std::isfinite(result.fit.cost)) {
+    ShapeProblem problem(prior, result.seen);
+    result.fit = descent.descend(problem, start, config.most_iterations, StartKind::near);
+  } else {
+    result.fit.shape = start;
+  }
+  return result;
+}
+
 }  // namespace
 
 double ShapeEstimate::rms_sigma() const {
@@ -214,8 +236,7 @@ std::vector<Observation> ShapeEstimator::prepared(std::span<const Observation> o
 ShapeEstimate ShapeEstimator::estimate(std::span<const Observation> observations) {
   std::vector<Observation> prepared_ones = prepared(observations);
   if (prepared_ones.empty() || !have_axes(prepared_ones)) return unseen(straight_shape(prior_));
-  ShapeSearch search(prior_, config_.most_iterations, config_.most_rms, descent_);
-  auto [fit, seen, apart] = search.best(prepared_ones);
+  auto [fit, seen, apart] = searched(prior_, config_, descent_, prepared_ones);
   ShapeProblem problem(prior_, seen);
   if (!problem.linearise(fit.shape)) fit.cost = std::numeric_limits<double>::infinity();
   const double cost = fit.cost;
@@ -246,8 +267,9 @@ ShapeEstimate ShapeEstimator::follow(std::span<const Observation> observations, 
 
 ShapeEstimate ShapeEstimator::update(std::span<const Observation> observations,
                                      const ShapePrediction& before) {
-  const std::vector<Observation> seen = prepared(observations);
+  std::vector<Observation> seen = prepared(observations);
   if (!are_enough(seen)) return unseen(before.mean);
+  for (std::size_t i = 0; i < seen.size(); ++i) distrust_hidden_tip(before.mean, i, seen[i]);
   ShapeProblem problem(prior_, seen, {}, &before);
   ShapeFit fit = descent_.descend(problem, before.mean, config_.most_iterations, StartKind::near);
   const double cost = fit.cost;
@@ -343,6 +365,13 @@ ShapePrior described_arm(const Arm& arm) {
   ShapePrior prior;
   prior.arm = arm;
   prior.is_length_known = std::ranges::none_of(arm.sections, &Section::can_stretch);
+  // The pictures do not determine each of many short bends. A random walk of the curvature, with steps far
+  // larger than those of most arms, keeps neighbours from bending against each other.
+  constexpr std::size_t few = 12;
+  constexpr double step = 10, sections = 30;  // rad per length, for this number of sections.
+  const std::size_t count = arm.sections.size();
+  if (count > few)
+    prior.curvature_step = step / arm.length() * std::sqrt(sections / static_cast<double>(count));
   return prior;
 }
 

@@ -15,11 +15,11 @@ namespace flexura {
 
 /// Settings of an estimate.
 struct EstimatorConfig {
-  std::size_t most_points =
-      100;  ///< Largest number of points per observation. If there are more, evenly spaced ones are selected.
+  /// Largest number of points per observation. From more points, evenly spaced points are selected.
+  std::size_t most_points = 100;
   int most_iterations = 60;  ///< Largest number of iterations per descent.
-  /// If the standard deviation of the shape exceeds this value, the estimate gets a note. It is the root mean
-  /// square along the arm, as a share of its length.
+  /// If the standard deviation of the shape exceeds this value, the estimate gets a note. The standard
+  /// deviation is the root mean square along the arm, as a share of its length.
   double uncertain = 1.1e-4;
   /// Largest accepted root mean square distance between the points and the shape's images, px, in addition to
   /// the points' noise. Inaccurate cameras need a larger value.
@@ -63,7 +63,7 @@ class ShapeEstimator {
   /// `prior`: prior knowledge of the arm.
   explicit ShapeEstimator(ShapePrior prior, EstimatorConfig config = {});
 
-  /// Estimates the shape without a given start. It triangulates points of the two observations with the most
+  /// Estimates the shape without a given start. Triangulates points of the two observations with the most
   /// nearly perpendicular lines of sight and the largest visible arm. Corresponding points are found by
   /// epipolar geometry and order. If the base's position is known, each observation is ordered from the end
   /// nearer to the base. If it is unknown, the first observation keeps its order, and the others are tried in
@@ -74,8 +74,9 @@ class ShapeEstimator {
   /// view errors.
   [[nodiscard]] ShapeEstimate follow(std::span<const Observation> observations, const Shape& before);
 
-  /// Updates a predicted shape. The prediction is weighted by its covariance. It includes the views' errors
-  /// and replaces the priors of the observations. These priors only determine which views have an error.
+  /// Updates a predicted shape. The prediction is weighted by its covariance. The prediction includes the
+  /// views' errors and replaces the priors of the observations. These priors only determine which views have
+  /// an error.
   [[nodiscard]] ShapeEstimate update(std::span<const Observation> observations,
                                      const ShapePrediction& before);
 
@@ -94,7 +95,8 @@ class ShapeEstimator {
 };
 
 /// Returns the prior of an arm that a file describes. Everything is known; only the length is unknown if a
-/// section can stretch.
+/// section can stretch. For more than 12 sections, the prior has a standard deviation of the change of
+/// curvature.
 [[nodiscard]] ShapePrior described_arm(const Arm& arm);
 
 /// Returns the prior of an arm without a kinematic model: `sections` equal, short, smooth sections.

@@ -171,8 +171,8 @@ void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& 
     fit.outlier_share_in.push_back(seen_in[i] > 0 ? 1 - inliers_in[i] / seen_in[i] : 0.0);
   fit.innovation = std::sqrt(against / std::max(predictions, 1.0));
   // After a belief, the estimate belongs to a filter, which treats points as independent.
-  fit.covariance =
-      predictions > 0 ? filtered_covariance(problem, square, weight) : covariance(problem, square, weight);
+  fit.covariance = problem.is_filtered() ? filtered_covariance(problem, square, weight)
+                                         : covariance(problem, square, weight);
 }
 
 // Inverse of the sum of the previous information and that of the observations, scaled by their residuals.

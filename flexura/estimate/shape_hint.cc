@@ -110,11 +110,39 @@ std::optional<std::string> hint_of_base(std::span<const Observation> observation
     for (const SeenBorder& point : seen.borders) nearest = std::min(nearest, (point.pixel - *base).norm());
     if (std::isfinite(nearest) && nearest > far * std::hypot(width, height))
       return fmt::format(
-          "the base would be visible at ({:.0f}, {:.0f}) in picture {}, {:.0f} px from the arm: check the "
+          "the base would be visible at ({:.0f}, {:.0f}) in picture {}, {:.0f} px from the arm. Check the "
           "base's position, whether the picture is from this camera, and whether it is upside down",
           base->x(), base->y(), i + 1, nearest);
   }
   return std::nullopt;
+}
+
+// Returns the unit of lengths that are this many times too large; "" if it is no such factor.
+std::string unit_of(double factor) {
+  constexpr double near = 0.15;
+  for (const auto& [name, size] :
+       {std::pair("mm", 1000.0), std::pair("cm", 100.0), std::pair("inches", 1 / 0.0254)})
+    if (std::abs(factor / size - 1) < near) return name;
+  return "";
+}
+
+// Returns a hint if the arm in the pictures has another length than the described one.
+std::optional<std::string> hint_of_length(const ShapePrior& prior,
+                                          std::span<const Observation> observations) {
+  constexpr double same = 0.15;
+  const ShapeEstimate free = ShapeEstimator(unknown_arm(std::nullopt, std::nullopt)).estimate(observations);
+  if (!free.is_found) return std::nullopt;
+  const double seen = Backbone(free.shape.arm, free.shape.state).length(), described = prior.arm.length();
+  if (std::abs(std::log(described / seen)) < same) return std::nullopt;
+  std::string hint = fmt::format(
+      "with these positions of the cameras, the pictures show {:.3g} m of an arm, but its length is given as "
+      "{:.3g} m",
+      seen, described);
+  if (const std::string unit = unit_of(described / seen); !unit.empty())
+    return hint + fmt::format(": are the lengths of the arm in {}? Expected m", unit);
+  if (const std::string unit = unit_of(seen / described); !unit.empty())
+    return hint + fmt::format(": are the positions of the cameras in {}? Expected m", unit);
+  return hint;
 }
 
 }  // namespace
@@ -122,7 +150,13 @@ std::optional<std::string> hint_of_base(std::span<const Observation> observation
 std::optional<std::string> hint_of(const ShapePrior& prior, std::span<const Observation> observations,
                                    const ShapeEstimate& estimate) {
   if (estimate.is_found) return hint_of_radius(observations, estimate.shape);
-  return prior.is_base_position_known ? hint_of_base(observations, prior.arm.X_WB.position) : std::nullopt;
+  auto hint =
+      prior.is_base_position_known ? hint_of_base(observations, prior.arm.X_WB.position) : std::nullopt;
+  if (!prior.is_length_known) return hint;
+  // A wrong unit also moves the base.
+  auto other = hint_of_length(prior, observations);
+  const bool is_unit = other && other->ends_with("Expected m");
+  return is_unit || !hint ? other : hint;
 }
 
 }  // namespace flexura

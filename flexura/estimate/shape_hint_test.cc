@@ -8,13 +8,18 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "flexura/model/backbone.h"
+#include "tests/support/observations.h"
+#include "tests/support/random_cases.h"
 
 namespace flexura {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 View seen_from_origin() {
   const Intrinsics lens{.fx = 800, .fy = 800, .cx = 319.5, .cy = 239.5};
@@ -91,6 +96,32 @@ TEST(ShapeHint, TellsWhereTheBaseWouldBe) {
   EXPECT_EQ(hint(), "none") << "beside both";
   prior.arm.X_WB.position = {0, 0, -1};
   EXPECT_THAT(hint(), HasSubstr("the base is behind the camera of picture 1"));
+}
+
+TEST(ShapeHint, TellsAWrongUnitOfLengths) {
+  TestRandom random(5);
+  const Arm arm = three_section_arm();
+  const Backbone truth(arm, random_bends(random, arm, 1.2));
+  const std::vector<Observation> seen = observations_of(truth, random, 0.05);
+  const auto hint = [](const Arm& described, std::span<const Observation> observations) {
+    const ShapePrior prior = described_arm(described);
+    const ShapeEstimate estimate = ShapeEstimator(prior).estimate(observations);
+    EXPECT_FALSE(estimate.is_found);
+    return hint_of(prior, observations, estimate).value_or("none");
+  };
+  Arm long_arm = arm;
+  for (Section& section : long_arm.sections) section.length *= 1000;
+  EXPECT_THAT(hint(long_arm, seen), HasSubstr("are the lengths of the arm in mm"));
+  std::vector<Observation> far = seen;
+  for (Observation& one : far) one.view.X_WC.position *= 100;
+  Arm far_arm = arm;
+  far_arm.X_WB.position *= 100;
+  EXPECT_THAT(hint(far_arm, far), HasSubstr("are the positions of the cameras in cm"));
+  // No unit explains twice the length.
+  Arm twice = arm;
+  for (Section& section : twice.sections) section.length *= 2;
+  EXPECT_THAT(hint(twice, seen),
+              AllOf(HasSubstr("m of an arm, but its length is given as"), Not(HasSubstr("Expected m"))));
 }
 
 }  // namespace

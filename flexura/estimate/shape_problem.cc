@@ -37,7 +37,7 @@ ShapeProblem::ShapeProblem(const ShapePrior& prior, std::span<const Observation>
     const Cholesky known(prediction->covariance);
     const Eigen::Index count = variables_.count();
     if (known.is_definite()) {
-      predicted_ = prediction->mean;
+      predicted_ = prediction->mean, is_filtered_ = !prediction->is_guess;
       // Any root of the inverse works: here that of L L^T.
       prediction_ = known.solve_lower(Eigen::MatrixXd::Identity(count, count));
       rows += static_cast<std::size_t>(count);

@@ -28,8 +28,8 @@ class ShapeProblem {
  public:
   /// `observations` must outlive the problem. Only the bands in `band_observations` are used. A marker with a
   /// known position is compared with this position. A marker with an unknown position is compared between
-  /// pictures. `prediction` also replaces the priors of the observations' views. It is ignored unless its
-  /// covariance is positive definite.
+  /// pictures. `prediction` also replaces the priors of the observations' views. `prediction` is ignored if
+  /// its covariance is not positive definite.
   ShapeProblem(const ShapePrior& prior, std::span<const Observation> observations,
                std::vector<BandObservation> band_observations = {},
                const ShapePrediction* prediction = nullptr);
@@ -52,6 +52,8 @@ class ShapeProblem {
   [[nodiscard]] std::size_t observation(Eigen::Index row) const {
     return of_observation_[static_cast<std::size_t>(row)];
   }
+  /// Returns whether a prediction that is no guess is used.
+  [[nodiscard]] bool is_filtered() const { return is_filtered_; }
   [[nodiscard]] const SpaceCurve& curve() const { return curve_; }
   [[nodiscard]] std::span<const Observation> observations() const { return observations_; }
   [[nodiscard]] std::span<const BandObservation> band_observations() const { return band_observations_; }
@@ -74,6 +76,7 @@ class ShapeProblem {
   std::span<const Observation> observations_;
   std::vector<BandObservation> band_observations_;
   std::optional<Shape> predicted_;
+  bool is_filtered_ = false;
   Eigen::MatrixXd prediction_;  // R, with R^T R the inverse of its covariance.
   SpaceCurve curve_;
   CurveImage image_;

@@ -20,8 +20,9 @@ namespace flexura {
 [[nodiscard]] Shape mirrored(const ShapePrior& prior, const Shape& shape, std::size_t section,
                              const View& view);
 
-/// Returns `ways` shapes in which one section bends by `bend` rad, in evenly spaced directions. They are
-/// starts for a section whose direction no picture shows, because it is hidden or points at the camera.
+/// Returns `ways` shapes in which one section bends by `bend` rad, in evenly spaced directions. The shapes
+/// are starting points for a section whose direction no picture shows, because it is hidden or points at the
+/// camera.
 [[nodiscard]] std::vector<Shape> bent_otherwise(const Shape& shape, std::size_t section, double bend,
                                                 int ways);
 

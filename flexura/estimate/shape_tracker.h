@@ -14,8 +14,8 @@ namespace flexura {
 /// Standard deviations of the process noise of an arm and of the cameras' views.
 struct TrackerConfig {
   double process_noise = 0.005;  ///< Process noise of each bend, rad per root second.
-  /// Process noise of each bend of an arm with dynamics, rad per root second. It is larger, because an error
-  /// of the equilibrium must not be mistaken for an oscillation.
+  /// Process noise of each bend of an arm with dynamics, rad per root second. This noise is larger, because
+  /// an error of the equilibrium must not be mistaken for an oscillation.
   double swinging_noise = 0.03;
   double motion_noise =
       /// Motion-proportional noise of each bend, as a share of the predicted change of the section's bend.
@@ -47,7 +47,7 @@ class ShapeTracker {
   /// oscillation. `path`: motion of the drives since the previous estimate.
   [[nodiscard]] ShapeEstimate look(std::span<const Observation> observations, double time,
                                    const std::optional<ArmState>& expected, const SwingPath& path);
-  /// Returns the oscillation at the last estimate. It is not tracked for an arm without modes.
+  /// Returns the oscillation at the last estimate. For an arm without modes, no oscillation is tracked.
   [[nodiscard]] const SwingFilter& swing() const { return swing_; }
 
   /// Resets the tracker. The next estimate uses no prediction.

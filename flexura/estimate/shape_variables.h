@@ -40,11 +40,14 @@ struct Shape {
 struct ShapePrediction {
   Shape mean;
   Eigen::MatrixXd covariance;  ///< Covariance of the unknowns (ShapeVariables), including views with a prior.
+  /// Whether this is a guess, not the state of a filter. The covariance of the estimate then allows for the
+  /// correlated errors of the observations. A filter treats them as independent.
+  bool is_guess = false;
 };
 
-/// The unknowns of a prior, in order. They begin with the bends (x and y of each section; only x for planar
-/// arms). The base's position (m, in W), the base's rotation about its own x and y (rad) and the logarithm of
-/// the stretch follow. The last ones are the error of each view with a prior (turn in rad, focal).
+/// The unknowns of a prior, in order. First are the bends (x and y of each section; only x for planar arms).
+/// Next are the base's position (m, in W), the base's rotation about its own x and y (rad), and the logarithm
+/// of the stretch. Last is the error of each view with a prior (turn in rad, focal).
 class ShapeVariables {
  public:
   /// `observations`: their view priors determine which views have an error.
@@ -52,7 +55,7 @@ class ShapeVariables {
 
   /// Returns the number of all unknowns.
   [[nodiscard]] Eigen::Index count() const { return count_; }
-  /// Returns the number of unknowns of the arm's shape. They are the first unknowns.
+  /// Returns the number of unknowns of the arm's shape. These unknowns are the first unknowns.
   [[nodiscard]] Eigen::Index of_shape() const { return of_shape_; }
   /// Returns the index of the first unknown of the error of an observation's view; -1: the view has no error.
   [[nodiscard]] Eigen::Index of_view(std::size_t observation) const {

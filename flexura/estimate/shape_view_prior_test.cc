@@ -50,7 +50,7 @@ TEST(ShapeWithViewPriors, SaysHowACameraStandsOnlyWhereThatExplainsThePictures) 
     seen[1] = look()[1];
     const ShapeEstimate none = ShapeEstimator(prior).estimate(seen);
     const bool explains_little = none.outlier_share >= 0.1 || none.scale >= ShapeFit::most_scale;
-    const bool is_said = none.reason.find("would need a camera that is rotated") != std::string::npos;
+    const bool is_said = none.reason.find("fits only if its camera is rotated") != std::string::npos;
     EXPECT_EQ(none.is_elsewhere, is_said);
     EXPECT_FALSE(is_said && explains_little) << none.reason;
     if (none.reason.starts_with("the pictures require camera errors far beyond")) ++omitted;

@@ -37,8 +37,8 @@ class SpaceCurve {
   [[nodiscard]] std::size_t intervals_a_section() const { return intervals_; }
   /// Returns the arc length between knots i and i + 1, m.
   [[nodiscard]] double interval(std::size_t i) const { return lengths_[i / intervals_]; }
-  /// Returns the position, as a fractional index of knots, of the point `s` m along the unstretched arm. It
-  /// is 0 at the base and the number of intervals at the tip. It is clamped to this range.
+  /// Returns the position, as a fractional index of knots, of the point `s` m along the unstretched arm. The
+  /// index is 0 at the base and the number of intervals at the tip. The index is clamped to this range.
   [[nodiscard]] double place_of(const Arm& arm, double s) const;
   /// Returns the inverse of place_of(): the arc length on the unstretched arm, m.
   [[nodiscard]] double s_of(const Arm& arm, double place) const;

@@ -34,9 +34,9 @@ struct SwingFilterConfig {
 
 /// Estimates the oscillation of an arm about its equilibrium: the modes' coordinates z, their rates z', and a
 /// factor on each frequency (docs/estimation.md, "An arm that swings"). The factors correct a wrong stiffness
-/// or mass of the model. The filter is an extended Kalman filter on (z, z', logarithms of the factors). It is
-/// a part of a larger filter, whose other unknowns begin with the bends of the arm's shape, including the
-/// oscillation.
+/// or mass of the model. The filter is an extended Kalman filter on (z, z', logarithms of the factors). This
+/// filter is a part of a larger filter. The first of the other unknowns are the bends of the arm's shape,
+/// including the oscillation.
 class SwingFilter {
  public:
   /// Starts without modes: the oscillation is not tracked.

@@ -58,7 +58,7 @@ TEST(BadServo, EachIsOneClearLine) {
            {"rate = 0\ntarget = [{" + bends + "}]\n", "task[0].rate = 0: expected a number above 0"},
            {"target = [{bends = [[0, 0]]}]\n", "target[0]"},
            {"law = \"potential\"\ncameras = [\"side\", \"front\"]\ntarget = [{" + bends + "}]\n",
-            "task[0].law: \"potential\" reads camera side as the plane XOY"},
+            "task[0].law: the law potential takes the picture of camera side as the plane XOY"},
            {"measure = \"flow\"\ntarget = [{" + bends + "}]\n",
             "task[0].measure: \"flow\" measures the angles of chords"},
            {"law = \"chords\"\nmeasure = \"flow\"\nanchor = 0\ntarget = [{" + bends + "}]\n",

@@ -19,7 +19,9 @@ constexpr std::size_t piece = std::size_t{256} << 10;
 }  // namespace
 
 DriveCommands::DriveCommands(Arm arm, Drive drive, const std::filesystem::path& file)
-    : arm_(std::move(arm)), drive_(std::move(drive)), file_(file) {
+    : arm_(std::move(arm)), drive_(std::move(drive)) {
+  if (file.empty()) return;
+  file_.emplace(file);
   rows_.cell("time");
   for (std::size_t i = 0; i < drive_.axes.size(); ++i) rows_.cell(drive_.axis_name(i));
   for (std::size_t i = 0; i < drive_.axes.size(); ++i) rows_.cell(drive_.axis_name(i) + "_rate");
@@ -44,6 +46,7 @@ void DriveCommands::step(double time, const ArmState& state, Recorder& recorder)
   }
   time_ = time;
   recorder.write({drive_commands_topic, message.time, message});
+  if (!file_) return;
   rows_.cell(time);
   for (const std::int64_t position : message.positions) rows_.cell(fmt::format("{}", position));
   rows_.cells(message.rates);
@@ -62,13 +65,14 @@ std::vector<std::int64_t> DriveCommands::positions_after(std::span<const ArmStat
 }
 
 void DriveCommands::write_rows() {
-  file_.append(std::as_bytes(std::span(rows_.text())));
+  file_->append(std::as_bytes(std::span(rows_.text())));
   rows_ = {};
 }
 
 void DriveCommands::close() {
+  if (!file_) return;
   write_rows();
-  file_.close();
+  file_->close();
 }
 
 }  // namespace flexura

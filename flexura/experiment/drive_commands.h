@@ -20,7 +20,8 @@ namespace flexura {
 /// motors' positions at the start of the run.
 class DriveCommands {
  public:
-  /// Starts the new table `file`. Throws std::system_error if the file exists or cannot be written.
+  /// Starts the new table `file`. An empty `file` means no table. Throws std::system_error if the file exists
+  /// or cannot be written.
   DriveCommands(Arm arm, Drive drive, const std::filesystem::path& file);
 
   /// Adds the arm's state that the motors must reach at `time` (s). Times must increase.
@@ -35,8 +36,8 @@ class DriveCommands {
 
   Arm arm_;
   Drive drive_;
-  AppendFile file_;
-  CsvText rows_;  // Rows that are not yet in the file.
+  std::optional<AppendFile> file_;  // Missing: only the log receives the commands.
+  CsvText rows_;                    // Rows that are not yet in the file.
   double time_ = 0;
   std::optional<MotorCommander> commander_;  // Set with the first state.
 };

@@ -232,7 +232,7 @@ TEST_F(Dynamics, TellsWhatItsBasisCannotHave) {
   const RunResult result = run(text, {"task.0.basis=\"polynomial\"", "task.0.nodes=2"});
   EXPECT_GT(number(dynamics(result), "target_off"), 0.05);
   EXPECT_EQ(number(dynamics(result), "start_off"), 0);
-  EXPECT_THAT(text_of(result, report_file_name), HasSubstr("and the requested target with an error of"));
+  EXPECT_THAT(text_of(result, report_file_name), HasSubstr("error for the requested target is"));
   EXPECT_LT(
       number(dynamics(run(text, {"task.0.basis=\"polynomial\"", "task.0.nodes=10", "task.0.duration=0.1"})),
              "target_off"),

@@ -10,6 +10,7 @@
 
 #include "flexura/base/table.h"
 #include "flexura/experiment/experiment.h"
+#include "flexura/experiment/experiment_document.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/sim/deep_start.h"
@@ -141,7 +142,7 @@ Experiment read_with_files(const Node& document, const std::filesystem::path& fo
   std::ranges::move(missing_files(document, folder), std::back_inserter(problems));
   auto experiment = read_document(document, std::move(problems));
   experiment.folder = folder;
-  problems.clear();
+  problems = seeing_file_problems(experiment, document);
   for (std::size_t i = 0; i < experiment.task.size(); ++i)
     read_task_files(experiment.task[i], experiment, task_nodes(document).at(i), fmt::format("task[{}]", i),
                     problems);
@@ -225,7 +226,18 @@ void set_value(Node& document, const std::string& set) {
   if (!error.empty()) throw input_error(source, error, 1, 1);
 }
 
-Node resolved_overrides(Node document, const Overrides& overrides) {
+// Returns the checked experiment of a document in `folder`. `title`: title if the document has none.
+Experiment experiment_of(const Node& document, const std::filesystem::path& folder, const std::string& title,
+                         std::vector<Problem> problems) {
+  auto experiment = read_with_files(document, folder, std::move(problems));
+  if (experiment.title.empty()) experiment.title = title;
+  check_whole(experiment, document);
+  return experiment;
+}
+
+}  // namespace
+
+Node with_overrides(Node document, const Overrides& overrides) {
   std::vector<Problem> problems;
   for (const std::string& set : overrides.sets) {
     try {
@@ -243,20 +255,42 @@ Node resolved_overrides(Node document, const Overrides& overrides) {
   return document;
 }
 
+namespace {
+
+// Only the text of an experiment has no folder.
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.parent_path().empty() ? "." : file.parent_path();
+}
+
 }  // namespace
 
 Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides) {
   std::vector<Problem> repeated;
-  const Node document = resolved_overrides(read_toml_file(file, &repeated), overrides);
-  auto experiment = read_with_files(document, file.parent_path(), std::move(repeated));
-  if (experiment.title.empty()) experiment.title = file.stem().string();
-  check_whole(experiment, document);
-  return experiment;
+  const Node document = with_overrides(read_toml_file(file, &repeated), overrides);
+  return experiment_of(document, folder_of(file), file.stem().string(), std::move(repeated));
+}
+
+ExperimentDocument::ExperimentDocument(const std::filesystem::path& file, const Overrides& overrides)
+    : ExperimentDocument(with_overrides(read_toml_file(file), overrides), folder_of(file),
+                         file.stem().string()) {}
+
+ExperimentDocument::ExperimentDocument(Node document, std::filesystem::path folder, std::string title)
+    : document_(std::move(document)), folder_(std::move(folder)), title_(std::move(title)) {}
+
+Experiment ExperimentDocument::experiment(std::span<const Setting> settings) const {
+  Node changed = document_;
+  std::vector<Problem> problems;
+  for (const Setting& setting : settings) {
+    const std::string error = set_at_path(changed, setting.path, setting.value);
+    if (!error.empty()) problems.push_back({setting.value.where, error});
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return experiment_of(changed, folder_, title_, {});
 }
 
 Experiment parse_experiment(std::string_view text, const std::string& source, const Overrides& overrides) {
   std::vector<Problem> repeated;
-  const Node document = resolved_overrides(parse_toml(text, source, &repeated), overrides);
+  const Node document = with_overrides(parse_toml(text, source, &repeated), overrides);
   auto experiment = read_document(document, std::move(repeated));
   const auto names_file = [](const Node& task) {
     const Node* file = file_of(task);

@@ -128,19 +128,25 @@ Rehearsed run_rehearsed(const Experiment& experiment, const VideoServerConfig& v
 // Equal but for rounding: devices report counts.
 bool is_same(double a, double b) { return std::abs(a - b) < 1e-12; }
 
-// Root mean square distance of the markers in the looks that both runs took from the same places, px.
+bool is_from_same_place(const CalibrationObservationMessage& one,
+                        const CalibrationObservationMessage& other) {
+  return one.camera == other.camera && is_same(one.pan, other.pan) && is_same(one.tilt, other.tilt) &&
+         is_same(one.zoom, other.zoom) && one.bends == other.bends;
+}
+
+// Root mean square distance of the markers in the looks that both runs took from the same places, px. A busy
+// machine may repeat a look.
 double marker_distance(const Rehearsed& a, const Rehearsed& b, std::size_t& looks) {
   double sum = 0;
   std::size_t count = 0;
   looks = 0;
-  for (std::size_t i = 0; i < std::min(a.seen.size(), b.seen.size()); ++i) {
-    const auto &one = a.seen[i], &other = b.seen[i];
-    if (one.camera != other.camera || !is_same(one.pan, other.pan) || !is_same(one.tilt, other.tilt) ||
-        !is_same(one.zoom, other.zoom) || one.bends != other.bends)
-      break;
+  for (const CalibrationObservationMessage& one : a.seen) {
+    const auto other = std::ranges::find_if(
+        b.seen, [&](const CalibrationObservationMessage& each) { return is_from_same_place(one, each); });
+    if (other == b.seen.end()) continue;
     ++looks;
     for (const MarkerMessage& marker : one.markers)
-      for (const MarkerMessage& same : other.markers)
+      for (const MarkerMessage& same : other->markers)
         if (marker.s == same.s)
           sum += std::pow(marker.u - same.u, 2) + std::pow(marker.v - same.v, 2), ++count;
   }

@@ -23,6 +23,7 @@
 #include "flexura/log/results.h"
 #include "flexura/model/backbone.h"
 #include "flexura/report/report.h"
+#include "flexura/rig/seeing_config.h"
 #include "flexura/safety/violation_groups.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
@@ -159,7 +160,13 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   experiment.flexura = version();
   if (experiment.task.empty())
     throw InputError(std::vector<Problem>{{{}, "nothing to do: expected at least one [[task]]"}});
-  write_new_file(folder / experiment_file_name, experiment_toml(experiment));
+  const bool is_recorded = !folder.empty();
+  if (is_recorded) {
+    write_new_file(folder / experiment_file_name, experiment_toml(experiment));
+    copy_seeing_files(experiment, folder);
+  } else {
+    experiment.record.scene = experiment.record.report = experiment.record.cameras = false;
+  }
 
   const ArmModel arm = experiment.arm_model();
   RunResult result;
@@ -174,7 +181,8 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   if (!is_safe) result.outcome = RunOutcome::unsafe;
   // No motor commands for harmful motions: an unsafe motion is only simulated.
   if (experiment.drive && is_safe)
-    run_recorder.write_commands(experiment.drive->drive(), folder / commands_file_name);
+    run_recorder.write_commands(experiment.drive->drive(),
+                                is_recorded ? folder / commands_file_name : folder);
   const Played played = player.play();
   // A task that decides its motion during the run may differ from the first check.
   const bool became_unsafe = is_safe && !player.safety().is_safe() && !has_failed(played);
@@ -182,21 +190,22 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   conclude(played, result);
   run_recorder.log().event(played.time, Recorder::Level::info, "run", name_of(result.outcome));
   run_recorder.close();
-  if (became_unsafe) std::filesystem::remove(folder / commands_file_name);
+  if (became_unsafe && is_recorded) std::filesystem::remove(folder / commands_file_name);
 
   for (std::size_t i = 0; i < player.tasks().size(); ++i) {
     TaskRunner& task = *player.tasks()[i];
     task.finish(folder, played.is_cancelled, player.progress().results(i));
     player.progress().results(i).update(1, task.name());
   }
-  result.outcomes = run_outcomes(player, played, run_recorder.true_tip_off(), run_recorder.log().frames());
+  result.outcomes = run_outcomes(player, played, run_recorder.true_tip_off(), run_recorder.first_warning(),
+                                 run_recorder.log().frames());
   result.headline = headline_of(result.outcome, played.time, result.outcomes);
   result.summary = summary_of(experiment, arm, player, played, result);
   auto& summary = *result.summary.as<Node::Table>();
   if (experiment.record.cameras || !experiment.camera.empty())
     summary.push_back({"cameras", {}, camera_nodes(experiment.cameras(), run_recorder.log().frames())});
   add_results(experiment, player.tasks(), summary);
-  write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
+  if (is_recorded) write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
   if (experiment.record.report && !played.is_cancelled) {
     player.progress().report().update(0, "writing the report");
     ReportData data = std::move(run_recorder).report_data(experiment, player.schedule(), player.safety());

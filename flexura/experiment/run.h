@@ -35,8 +35,9 @@ struct RunResult {
   Node summary;                       ///< Content of summary.json.
 };
 
-/// Runs an experiment and writes its results into `folder`, which must exist and be empty. The results are
-/// the experiment as run, the log, the summary, the report and its figures (docs/results.md). Equal
+/// Runs an experiment and writes its results into `folder`, which must exist and be empty. An empty `folder`
+/// means no files: the run records no pictures and makes no report, but its summary is complete. The results
+/// are the experiment as run, the log, the summary, the report and its figures (docs/results.md). Equal
 /// experiments write equal bytes, with or without a watcher. A cancelled run writes its results so far,
 /// except the report, its figures and tables. `make_rig` makes the rig if cameras are recorded or a task
 /// needs a rig. By default `make_rig` makes the rig of the file's equipment, or a simulated rig. Throws

@@ -30,7 +30,7 @@ TaskOutcome outcome_of(const TaskRunner& task, const Leg& leg, const Played& pla
 }  // namespace
 
 std::vector<TaskOutcome> run_outcomes(const Player& player, const Played& played,
-                                      std::optional<double> true_tip_off,
+                                      std::optional<double> true_tip_off, const std::string& warning,
                                       const std::map<std::string, std::int64_t>& frames) {
   std::vector<TaskOutcome> outcomes;
   const Schedule& schedule = player.schedule();
@@ -49,6 +49,9 @@ std::vector<TaskOutcome> run_outcomes(const Player& player, const Played& played
          .success = "",
          .text = fmt::format("tip ends {} from its commanded position", length_text(*true_tip_off)),
          .size = {}});
+  if (!warning.empty())
+    outcomes.push_back(
+        {.task = "true arm", .kind = "truth", .noun = "warning", .success = "", .text = warning, .size = {}});
   std::int64_t count = 0;
   for (const auto& [camera, of_camera] : frames) count += of_camera;
   if (count > 0)

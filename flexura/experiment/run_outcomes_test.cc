@@ -1,6 +1,7 @@
 // Tests what a run says of its tasks: in its summary, its report and on the terminal.
 #include "flexura/experiment/run_outcomes.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,6 +19,7 @@ namespace flexura {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::string one_section = "[[arm.section]]\nlength = 1\n";
 
@@ -109,6 +111,31 @@ TEST(RunOutcome, IsInSummaryAndReport) {
   const std::string page = read_text_file(folder.path() / "results/report.html", 1 << 24);
   EXPECT_THAT(page, HasSubstr("<p class=\"outcome\">3 of 3 motions done</p>"));
   EXPECT_THAT(page, HasSubstr("<strong>to &amp; fro</strong> at the target shape after 0.2 s"));
+}
+
+// An arm of steel that hangs bent, and whose tendons break. Periods of its stretch modes are far below the
+// step.
+std::string released_arm(double spectral_radius) {
+  std::string text = fmt::format(
+      "[arm]\nkind = 'spatial'\nmodel = 'dynamic'\ngravity = [0, -9.81, 0]\ntime_step = "
+      "0.005\nspectral_radius = {}\n"
+      "base = {{ position = [0, 0.9, 0], rotation = [0, 0, 0.7071067811865476, -0.7071067811865476] }}\n"
+      "initial.bends_deg = [[60, 20]]\n"
+      "[[arm.section]]\nlength = 0.4\nradius = 0.015\nmax_bend_deg = 150\nmax_bend_rate_deg = 20000\n"
+      "material = {{ youngs_modulus = 2e11, poisson = 0.49, density = 8000, radius = 0.001, damping_time = 0 "
+      "}}\n",
+      spectral_radius);
+  for (const int angle : {0, 120, 240})
+    text +=
+        fmt::format("[[arm.tendon]]\nsection = 1\nradius_mm = 12\nangle_deg = {}\nbreaks_at = 0.05\n", angle);
+  return text + "[[task]]\nkind = 'hold'\nduration = 0.5\n";
+}
+
+// Without numerical damping the energy of these modes grows.
+TEST(RunOutcome, WarnsOfAnEnergyThatGrows) {
+  const TemporaryFolder folder, other;
+  EXPECT_THAT(run(released_arm(1), folder).headline, HasSubstr("the energy of the arm grows"));
+  EXPECT_THAT(run(released_arm(0.8), other).headline, Not(HasSubstr("energy")));
 }
 
 TEST(RunOutcome, OfAnUnsafeRunSaysSo) {

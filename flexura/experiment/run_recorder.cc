@@ -86,7 +86,7 @@ std::optional<Chapter> RodRecord::chapter(const Arm& arm, const std::vector<Obst
 }
 
 RunRecorder::RunRecorder(const std::filesystem::path& folder, const ArmModel& model, RunWatcher* watcher)
-    : log_(folder / log_file_name, model.driven(), watcher), model_(model) {}
+    : log_(folder.empty() ? folder : folder / log_file_name, model.driven(), watcher), model_(model) {}
 
 void RunRecorder::expect(std::size_t last_step) {
   last_step_ = last_step, kept_every_ = last_step / max_kept_states + 1;
@@ -170,6 +170,8 @@ void RunRecorder::rod_readings(RigTruth& truth, double now, const Backbone& back
   report_lost_steps(now, lost);
   std::string warning = truth.warning(now);
   if (warning != warned_ && !warning.empty()) log_.event(now, Recorder::Level::warning, "arm", warning);
+  if (first_warning_.empty() && !warning.empty())
+    first_warning_ = fmt::format("from {:.4g} s on: {}", now, warning);
   warned_ = std::move(warning);
   if (readings_++ % kept_every_ == 0) {
     rod_.times.push_back(now);

@@ -45,7 +45,7 @@ class RunRecorder {
   /// `watcher` receives the events and the messages of tasks; may be null.
   RunRecorder(const std::filesystem::path& folder, const ArmModel& model, RunWatcher* watcher = nullptr);
 
-  /// Sets the expected number of the last clock step. The run may take more steps.
+  /// Sets the number of the clock step that is expected to be the last. The run may take more steps.
   void expect(std::size_t last_step);
   /// Logs the scene, for programs that display logs.
   void draw_scene(const Experiment& experiment);
@@ -69,6 +69,8 @@ class RunRecorder {
   /// Returns the distance of the true tip from the commanded tip at the last readings, m; std::nullopt if the
   /// truth is unknown.
   [[nodiscard]] std::optional<double> true_tip_off() const { return true_tip_off_; }
+  /// Returns the first warning about the simulation of the true arm, with its time; "" without warnings.
+  [[nodiscard]] const std::string& first_warning() const { return first_warning_; }
 
   [[nodiscard]] ReportData report_data(const Experiment& experiment, const Schedule& schedule,
                                        const SafetyReport& safety) &&;
@@ -89,7 +91,8 @@ class RunRecorder {
   std::size_t last_step_ = 0;
   std::size_t kept_every_ = 1;
   std::size_t recorded_ = 0, readings_ = 0;
-  std::string warned_;    // Last warning about the arm.
+  std::string warned_;  // Last warning about the arm.
+  std::string first_warning_;
   bool touched_ = false;  // Whether the arm had a contact at the last readings.
   std::vector<double> times_;
   std::vector<ArmState> states_;

@@ -139,6 +139,9 @@ CameraCalibrationMessage calibration_message(const Camera& camera, double time, 
   message.frame_id = image_topic(camera.config().name).substr(1);
   message.width = sensor.width;
   message.height = sensor.height;
+  const LensModel model = lens.distortion.model();
+  if (model == LensModel::rational) message.distortion_model = "rational_polynomial";
+  if (model == LensModel::fisheye) message.distortion_model = "kannala_brandt";
   message.distortion.assign(lens.distortion.begin(), lens.distortion.end());
   message.intrinsics = {lens.fx, 0, lens.cx, 0, lens.fy, lens.cy, 0, 0, 1};
   message.rectification = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -19,7 +19,8 @@ TEST(ServoConfig, HasEverySettingOfItsTask) {
   rig.rest = "[[obstacle]]\nkind = \"sphere\"\ncenter = [3, 3, 3]\nradius = 0.1\n";
   const ServoConfig config =
       ServoBench(
-          servo_file("cameras = [\"side\", \"front\"]\nlaw = \"chords\"\nmeasure = \"flow\"\nanchor = 0.21\n"
+          servo_file("cameras = [\"side\", \"front\"]\nlaw = \"chords\"\ntrack = \"model\"\nmeasure = "
+                     "\"flow\"\nanchor = 0.21\n"
                      "jacobian = \"recursive\"\npoints = 7\nrate = 3.5\ndamping = 0.023\npredict = false\n"
                      "tolerance = 0.013\nsettle = 0.7\ntimeout = 11\nhold_after = 0.4\ngive_up_after = "
                      "2.5\nfollow = true\n"
@@ -30,6 +31,7 @@ TEST(ServoConfig, HasEverySettingOfItsTask) {
           .config();
   EXPECT_EQ(config.cameras, (std::array<std::size_t, 2>{1, 0}));
   EXPECT_EQ(config.law, ServoLawKind::chords);
+  EXPECT_EQ(config.track, ServoTracking::model);
   EXPECT_EQ(config.measure, ServoMeasure::flow);
   EXPECT_EQ(config.anchor, 0.21);
   EXPECT_EQ(config.jacobian, ServoJacobian::recursive);

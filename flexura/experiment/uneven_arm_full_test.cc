@@ -123,7 +123,7 @@ TEST(UnevenArmExample, IsCalibratedAsNearlyOneArcASectionWithANote) {
   const Node& calibration = result.summary.find("calibrations")->as<Node::Array>()->front();
   EXPECT_GT(*calibration.find("rms")->as<double>(), 1.2);
   const Node& last = calibration.find("notes")->as<Node::Array>()->back();
-  EXPECT_NE(last.as<std::string>()->find("the arm may bend differently"), std::string::npos);
+  EXPECT_NE(last.as<std::string>()->find("The arm may bend differently"), std::string::npos);
 }
 
 // With a model of one arc per section, its observations have no explanation, and no rig must be returned.

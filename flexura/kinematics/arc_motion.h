@@ -14,9 +14,9 @@ struct ArcMotion {
       angular;  ///< Angular velocity of the end frame per unit rate of bend_x and bend_y.
 };
 
-/// Returns arc_pose() (model/backbone.h) and its derivatives, for a bend in rad and a length in m. This is a
-/// fast version for solvers: it computes only one sine and one cosine, and no sine or cosine for bends below
-/// 0.5 rad. Errors are a few units in the last place of the length.
+/// Returns arc_pose() (model/backbone.h) and its derivatives, for a bend in rad and a length in m. A fast
+/// version for solvers: the function computes only one sine and one cosine, and no sine or cosine for bends
+/// below 0.5 rad. Errors are a few units in the last place of the length.
 [[nodiscard]] ArcMotion arc_motion(const Eigen::Vector2d& bend, double length);
 
 }  // namespace flexura

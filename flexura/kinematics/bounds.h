@@ -27,8 +27,8 @@ void project(const Bounds& bounds, Eigen::VectorXd& x);
 [[nodiscard]] double pressure(const Bounds& bounds, const Eigen::VectorXd& x,
                               const Eigen::VectorXd& gradient);
 
-/// Removes the parts of `gradient` for which -gradient points out of active bounds at x. The rest is zero at
-/// a constrained minimum.
+/// Removes the parts of `gradient` for which -gradient points out of active bounds at x. At a constrained
+/// minimum, the remaining gradient is zero.
 void free_gradient(const Bounds& bounds, const Eigen::VectorXd& x, Eigen::VectorXd& gradient);
 
 }  // namespace flexura

@@ -38,7 +38,7 @@ struct TendonFit {
   /// pulls against the others. A tendon with a negative residual is slack. The residuals are zero if the
   /// displacements are consistent.
   TendonDisplacements residual;
-  /// Whether a fit was found. This can be false only with guide disks; then `state` is the last iterate.
+  /// Whether a fit was found. The value can be false only with guide disks; then `state` is the last iterate.
   bool converged = true;
 };
 

@@ -60,16 +60,18 @@ struct Recorder::Channels {
 };
 
 Recorder::Recorder(const std::filesystem::path& file, const Arm& arm)
-    : channels_(std::make_unique<Channels>(file)), arm_(arm) {}
+    : channels_(file.empty() ? nullptr : std::make_unique<Channels>(file)), arm_(arm) {}
 
 Recorder::~Recorder() = default;
 
 void Recorder::write(const LoggedMessage& message) {
+  if (channels_ == nullptr) return;
   channels_->log.write(channels_->channel(message.topic(), message.schema()), nanoseconds(message.time()),
                        write_json(message.node()));
 }
 
 void Recorder::state(double time, const ArmState& state, const Backbone& backbone) {
+  if (channels_ == nullptr) return;
   ArmStateMessage message{.time = time,
                           .bends = bends_of(state),
                           .stretches = state.stretches,
@@ -89,6 +91,7 @@ void Recorder::state(double time, const ArmState& state, const Backbone& backbon
 }
 
 void Recorder::truth(double time, const Backbone& backbone) {
+  if (channels_ == nullptr) return;
   PosesMessage poses = poses_message(time);
   for (const Arc& arc : backbone.arcs()) poses.poses.push_back(pose_message(arc.X_WS));
   poses.poses.push_back(pose_message(backbone.tip()));
@@ -128,13 +131,15 @@ std::string logged_image(const std::string& camera, const Frame& frame) {
 }
 
 void Recorder::image(const std::string& camera, const Frame& frame, std::string_view message) {
-  channels_->write_image(image_topic(camera), frame.received, message);
+  if (channels_ != nullptr) channels_->write_image(image_topic(camera), frame.received, message);
 }
 
 void Recorder::picture(const std::string& topic, double time, const Picture& picture) {
-  channels_->write_image(topic, time, image_text(topic, time, picture));
+  if (channels_ != nullptr) channels_->write_image(topic, time, image_text(topic, time, picture));
 }
 
-void Recorder::close() { channels_->log.close(); }
+void Recorder::close() {
+  if (channels_ != nullptr) channels_->log.close();
+}
 
 }  // namespace flexura

@@ -25,7 +25,8 @@ class LoggedMessage;
 /// opens its channel.
 class Recorder {
  public:
-  /// Starts a new log. Throws std::runtime_error if the file exists or cannot be written.
+  /// Starts a new log. An empty `file` means no log: messages are dropped. Throws std::runtime_error if the
+  /// file exists or cannot be written.
   Recorder(const std::filesystem::path& file, const Arm& arm);
   ~Recorder();
   Recorder(const Recorder&) = delete;

@@ -116,7 +116,7 @@ const Table<CameraCalibrationMessage>& fields_of(const CameraCalibrationMessage*
           .field("width", &M::width, {.meaning = "px"})
           .field("height", &M::height, {.meaning = "px"})
           .field("distortion_model", &M::distortion_model, {})
-          .field("D", &M::distortion, {.meaning = "k1, k2, p1, p2, k3."})
+          .field("D", &M::distortion, {.meaning = "Coefficients of the distortion model."})
           .field("K", &M::intrinsics, {.meaning = "fx 0 cx, 0 fy cy, 0 0 1; px."})
           .field("R", &M::rectification,
                  {.meaning = "The identity matrix, because pictures are not rectified."})

@@ -89,13 +89,14 @@ struct FramesMessage {
   std::vector<FrameMessage> transforms;
 };
 
-/// foxglove.CameraCalibration, on /intrinsics/NAME. For `plumb_bob`, the distortion of OpenCV.
+/// foxglove.CameraCalibration, on /intrinsics/NAME. The distortion models are those of OpenCV: `plumb_bob` is
+/// the lens model brown, `rational_polynomial` is rational, and `kannala_brandt` is fisheye.
 struct CameraCalibrationMessage {
   TimeMessage timestamp;
   std::string frame_id;                ///< "camera/NAME"
   std::int64_t width = 0, height = 0;  ///< Of a picture, px.
   std::string distortion_model = "plumb_bob";
-  std::vector<double> distortion;            ///< k1, k2, p1, p2, k3.
+  std::vector<double> distortion;            ///< Coefficients of the distortion model.
   std::array<double, 9> intrinsics = {};     ///< fx 0 cx, 0 fy cy, 0 0 1, row by row, px.
   std::array<double, 9> rectification = {};  ///< The identity matrix, because pictures are not rectified.
   std::array<double, 12> projection = {};    ///< The intrinsics and a column of zeros, row by row, px.

@@ -11,7 +11,7 @@ namespace flexura {
 
 /// Position of a point relative to a body. `distance`: signed distance to the surface, m, negative inside.
 /// `normal`: outward unit normal, the gradient of the distance. `curvature`: derivative of the normal,
-/// symmetric, 1/m. The nearest point of the surface is point - distance normal.
+/// symmetric, 1/m. The nearest point of the surface is `point - distance * normal`.
 struct NearestPoint {
   double distance = std::numeric_limits<double>::infinity();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
@@ -30,8 +30,8 @@ class ContactShape {
   [[nodiscard]] NearestPoint nearest(const Eigen::Vector3d& p_B) const;
   /// Returns only the signed distance, m.
   [[nodiscard]] double distance(const Eigen::Vector3d& p_B) const;
-  /// Returns the smallest distance from the surface to the middle of the body: the radius of a ball or a
-  /// capsule, half the smallest size of a box; infinite for a plane, m.
+  /// Returns the smallest distance from the surface to the middle of the body, m. For a ball or a capsule
+  /// this is the radius, for a box half the smallest size; for a plane the result is infinite.
   [[nodiscard]] double half_thickness() const;
   /// Returns the length of the part of the rod next to its base that cannot touch the obstacle, m.
   [[nodiscard]] double ignore_base() const { return ignore_base_; }

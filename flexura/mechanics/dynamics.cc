@@ -29,7 +29,7 @@ void require_dynamics(const Rod& rod, const RodDynamicsConfig& config) {
     const RodSection& section = rod.sections[i];
     if (!(section.mass_per_length_at(0) > 0) || !(section.mass_per_length_at(1) > 0))
       throw std::invalid_argument(
-          fmt::format("section {}: a rod in motion must have a density or a mass for each metre", i + 1));
+          fmt::format("section {}: a rod in motion must have a density or a mass per length", i + 1));
     double most = 0;
     for (const double t : {0.0, 1.0})
       most = std::max({most, section.mass_per_length_at(t), section.stiffness_at(t).maxCoeff(),
@@ -241,7 +241,8 @@ RodState RodDynamics::rest() const {
 
 RodState RodDynamics::rest(const Equilibrium& at) const {
   RodState state = rest();
-  if (at.q.size() != state.q.size()) throw std::invalid_argument("the equilibrium belongs to another rod");
+  if (at.q.size() != state.q.size() || at.tensions.size() != state.tensions.size())
+    throw std::invalid_argument("the equilibrium belongs to another rod");
   state.q = at.q;
   state.tensions = at.tensions;
   if (!work_->rubs()) return state;

@@ -25,7 +25,7 @@ TEST(Dynamics, RefusesWhatIsNoInput) {
     }
     return "";
   };
-  EXPECT_EQ(refusal(rod, {}), "section 1: a rod in motion must have a density or a mass for each metre");
+  EXPECT_EQ(refusal(rod, {}), "section 1: a rod in motion must have a density or a mass per length");
   for (RodSection& section : rod.sections) section.density = 5000;
   EXPECT_EQ(refusal(rod, {.spectral_radius = 1.1}), "the spectral radius must be from 0 to 1");
   EXPECT_EQ(refusal(rod, {.rotary_inertia = false}),

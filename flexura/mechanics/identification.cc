@@ -26,7 +26,7 @@ constexpr int weightings = 8;
 // Number of linearisations with friction, and their tolerance as part of a standard deviation.
 constexpr int linearizations = 12;
 constexpr double settled = 0.01, settled_at_all = 1e-6;
-// Friction coefficients to start from where that of the rod leads to none.
+// Further initial friction coefficients, if the rod's own value gives no solution.
 constexpr std::array<double, 2> other_friction = {0.1, 0.3};
 // Ridge for rounding, relative to the variances of correlated equations.
 constexpr double ridge = 1e-9;
@@ -243,7 +243,8 @@ Identification identify(const Rod& rod, const std::vector<RodParameter>& paramet
   watching.update(0, solving);
   const IdentificationEquations first(rod, parameters, record, config);
   if (std::ranges::none_of(parameters, is_friction)) return solve(first, parameters);
-  // Without friction tendons slide at any speed, and noise decides where to: so other starts are needed.
+  // In a model without friction, tendons slide at any speed, and noise determines the direction. So the fit
+  // needs other initial values.
   std::vector<VectorXd> starts = {first.nominal};
   for (const double other : other_friction) {
     VectorXd start = first.nominal;

@@ -31,7 +31,7 @@ std::string input_problem(const RodStatics& statics, const RodTarget& target, co
   if (most.size() != count)
     return fmt::format("{} largest tensions given: expected {}, one per tendon", most.size(), count);
   for (const double each : most)
-    if (!std::isfinite(each) || each < 0) return "a largest tension is negative or not finite";
+    if (!std::isfinite(each) || each < 0) return "the largest tension of a tendon is negative or not finite";
   if (!target.position && !target.direction && !target.rotation && target.places.empty())
     return "the target is empty: expected a position, a direction, a rotation or places";
   if (target.position && !target.position->allFinite()) return "the target position must be finite";

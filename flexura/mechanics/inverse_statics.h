@@ -78,8 +78,8 @@ struct InverseStaticsResult {
 /// derivatives at the result.
 ///
 /// Method: Levenberg and Marquardt within bounds (BoundedDescent), then stabilized sequential quadratic
-/// programming (Wright 1998) along the tensions that reach the target. The second method handles dependent
-/// constraints, which occur where most tendons are slack.
+/// programming (Wright 1998) along the tensions that reach the target. Quadratic programming handles
+/// dependent constraints. Such constraints occur where most tendons are slack.
 [[nodiscard]] InverseStaticsResult solve_inverse_statics(RodStatics& statics, const RodTarget& target,
                                                          const RodLoads& loads,
                                                          const std::vector<double>& most,

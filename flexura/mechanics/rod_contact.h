@@ -83,8 +83,9 @@ class RodContact final : public RodSurroundings {
   [[nodiscard]] std::vector<ContactForce> find(std::span<const NodeMotion> points) const;
 
   /// Returns whether a point may have passed through an obstacle on its straight way from one motion to
-  /// another: it has touched the obstacle, and has moved by more than half of the sum of the tube's radius
-  /// and ContactShape::half_thickness(). Throws std::invalid_argument for a wrong number of points.
+  /// another. The result is true if the point has touched the obstacle and has moved farther than a limit.
+  /// The limit is half of the sum of the tube's radius and ContactShape::half_thickness(). Throws
+  /// std::invalid_argument for a wrong number of points.
   [[nodiscard]] bool may_have_passed(std::span<const NodeMotion> before,
                                      std::span<const NodeMotion> after) const;
 

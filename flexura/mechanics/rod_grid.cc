@@ -89,7 +89,7 @@ void RodGrid::stretch_rest(double factor) {
   const double change = factor - rest.front()[stretch];
   if (change == 0) return;
   for (Vector6d& strain : rest) strain[stretch] = factor;
-  // The first moment is an integral over arc length: proportional for a constant.
+  // The first moment is an integral over arc length, so it is proportional to a constant strain.
   for (auto& of_interval : rest_moments) of_interval[0][stretch] *= factor / (factor - change);
 }
 

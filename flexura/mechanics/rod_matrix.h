@@ -38,9 +38,9 @@ class RodMatrix {
   /// Returns whether all points that have wrenches now also had wrenches when the matrix was factored.
   /// Columns are known only for these points.
   [[nodiscard]] bool has_columns_of(const RodMotion<double>& motion) const;
-  /// Adds to the generalized forces the change of the last wrenches of the surroundings. The change is due to
-  /// a change x of the rates, and a change stretch * x of the modes. Requires find_columns(), and that no
-  /// wrenches are coupled (RodSurroundings).
+  /// Adds to the generalized forces `force` the change of the last wrenches of the surroundings when the
+  /// rates change by x and the modes change by stretch * x. Requires find_columns(), and that no wrenches are
+  /// coupled (RodSurroundings).
   void add_pull_change(const RodMotion<double>& motion, double stretch, const double* x, double* force) const;
   /// Replaces the right-hand side x by its solution.
   void solve(double* x) const;

@@ -44,7 +44,7 @@ class RodResponse : public ArmResponse {
   static constexpr double secant = 0.02;  ///< rad
 
   /// Returns the modes of the rod with held tendons, linearised about its equilibrium (docs/mechanics.md,
-  /// "The rod as a model"). Empty unless `swings` was set.
+  /// "The rod as a model"). The result is empty if `swings` is not set.
   [[nodiscard]] std::vector<SwingMode> swing(const ArmState& command, std::size_t most) const override;
 
   [[nodiscard]] TendonTensions tensions(const ArmState& command) const override;

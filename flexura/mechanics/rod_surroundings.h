@@ -37,8 +37,8 @@ struct NodePull {
   bool is_idle = false;
   /// Friction and geometry may cause negative eigenvalues of the symmetric parts of -by_pose and -by_twist.
   /// With such eigenvalues, the matrix of a step may not be positive definite. If `is_held`, this matrix uses
-  /// the semidefinite `stiffness` and `damping` instead. With `is_held`, the solution of a step is the same,
-  /// but needs more iterations.
+  /// the semidefinite `stiffness` and `damping` instead. The solution of a step is then the same, but needs
+  /// more iterations.
   bool is_held = false;
   Matrix6d stiffness = Matrix6d::Zero();
   Matrix6d damping = Matrix6d::Zero();

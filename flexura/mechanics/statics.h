@@ -16,7 +16,7 @@ namespace flexura {
 /// Input of a rod's tendons. Each list has one number per tendon, or is empty.
 struct TendonInput {
   std::vector<double> tensions = {};  ///< Tensions at the base, N; >= 0.
-  /// Length of each tendon pulled in at the base, m, from the length at which the tendon is just taut on the
+  /// Displacement of each tendon at the base, m: positive if pulled in, 0 if the tendon is just taut on the
   /// undeformed rod. A tendon is slack if more of it is let out than the rod takes up.
   std::vector<double> displacements = {};
 };

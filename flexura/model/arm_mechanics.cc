@@ -82,7 +82,7 @@ void check_motion(const ArmConfig& arm, Reader& reader) {
   for (const Section& section : arm.section) length += section.length;
   if (length / *arm.contact->spacing > most_places)
     reader.problem_at("contact.spacing",
-                      fmt::format("{:.6g} m: expected at least {:.6g} m, which results in {} points",
+                      fmt::format("{:.6g} m: expected at least {:.6g} m, which gives {} contact points",
                                   *arm.contact->spacing, length / most_places, most_places));
   double thinnest = std::numeric_limits<double>::infinity();
   for (const Section& section : arm.section)

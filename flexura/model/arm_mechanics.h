@@ -14,7 +14,8 @@ namespace flexura {
 struct ArmConfig;
 
 /// Mechanical model of an arm. `kinematic`: the shape follows the commands. `statics`: sections are elastic
-/// rods in equilibrium with their tendons, gravity and loads. `dynamics`: these rods have inertia.
+/// rods in equilibrium with their tendons, gravity and loads. `dynamics`: elastic rods with inertia, which
+/// move under the same forces.
 enum class ArmMechanics { kinematic, statics, dynamics };
 
 /// Route of a tendon from the arm's base to the end of one section, `[[arm.tendon]]`. Let s be the arc length

@@ -15,7 +15,7 @@ namespace flexura {
 /// straight, unstretched arm. The type distinguishes displacements from tensions.
 struct TendonDisplacements {
   std::vector<double> pulled;  ///< Displacement of each tendon, m.
-  /// Angle by which each tendon turns between the arm's base and its end, rad. It is only needed to
+  /// Angle by which each tendon turns between the arm's base and its end, rad. This angle is only needed to
   /// compensate friction. Empty: friction is not compensated.
   std::vector<double> wraps = {};
 };
@@ -62,8 +62,8 @@ struct Spool {
   double radius = 0.01;  ///< Distance from the spool's axis to the middle of the cable, m; > 0.
   double gear = 1;       ///< Gear ratio: revolutions of the motor per revolution of the spool; > 0.
   double backlash = 0;   ///< Backlash between motor and spool, measured at the spool, rad; >= 0.
-  /// Cable length that the spool winds without effect on the arm after a reversal, because of friction along
-  /// a tendon that stretches: metres per radian by which the tendon turns; >= 0. Default: 0.
+  /// Cable length that the spool winds after a reversal without effect on the arm. The cause is friction
+  /// along a tendon that stretches. Metres per radian by which the tendon turns; >= 0. Default: 0.
   std::optional<double> friction_travel = {};
 };
 

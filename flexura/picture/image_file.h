@@ -33,7 +33,7 @@ struct PngConfig {
 /// The result has one channel for gray, including palettes of only grays, and otherwise three channels (red,
 /// green, blue). Values with up to 8 bits are scaled to 0 to 255. Values with more bits are as in the file,
 /// stored in 16 bits. The picture is upright: the
-/// orientation in EXIF data (JPEG, PNG) or TIFF tags is heeded. Alpha and colour profile are ignored.
+/// orientation in EXIF data (JPEG, PNG) or TIFF tags is applied. Alpha and colour profile are ignored.
 /// Transparent parts keep their colour. For other common kinds (BMP, WebP, JPEG 2000, OpenEXR, ...), the
 /// error message states the kind.
 ///

@@ -11,12 +11,12 @@
 // as fixed at their initial positions. `optics` is the model of the camera.
 namespace flexura {
 
-/// Commands the head. A camera without a head accepts only its initial head position. It refuses other
-/// positions with a message that contains the camera's name.
+/// Commands the head. A camera without a head accepts only its initial head position. Such a camera refuses
+/// other positions with a message that contains the camera's name.
 [[nodiscard]] CommandOutcome command_head(const CameraPorts& ports, const Camera& optics,
                                           const HeadState& state);
-/// Commands the stage. A camera without a stage accepts only its initial stage position. It refuses other
-/// positions with a message that contains the camera's name.
+/// Commands the stage. A camera without a stage accepts only its initial stage position. Such a camera
+/// refuses other positions with a message that contains the camera's name.
 [[nodiscard]] CommandOutcome command_stage(const CameraPorts& ports, const Camera& optics,
                                            const StageState& state);
 /// Stops head and stage, if present. Returns the first fault, if any.

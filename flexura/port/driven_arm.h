@@ -28,15 +28,15 @@ namespace flexura {
 /// drive. Hence the software of the controller needs no models.
 ///
 /// Motor positions or displacements of the controller are 0 for the straight, unstretched arm. If the
-/// controller does not report load positions, this class tracks the backlash from reading to reading. It
-/// always tracks the travel lost by friction in this way. If a motor then reverses twice between two
+/// controller does not report load positions, this class tracks the backlash from reading to reading. The
+/// class always tracks the travel lost by friction in this way. If a motor then reverses twice between two
 /// readings, the shape may have an error of up to the backlash or the lost travel.
 class DrivenArm : public ArmPort {
  public:
   /// Assumes that the arm has the shape `initial` and the motors are at nominal_positions(). `port` must
   /// outlive this object. Throws std::invalid_argument if the numbers of axes of controller and drive differ,
-  /// or if drive or shape do not fit the arm. Also throws it for a controller of tensions, because the shape
-  /// for given tensions needs a static model, which this class does not use.
+  /// or if drive or shape do not fit the arm. Also throws std::invalid_argument for a controller of tensions,
+  /// because the shape for given tensions needs a static model, which this class does not use.
   DrivenArm(DrivePort& port, const Arm& arm, const Drive& drive, const ArmState& initial);
 
   CommandOutcome command(const ArmState& state, double duration) override;
@@ -66,8 +66,8 @@ class DrivenArm : public ArmPort {
   FrictionPlay play_;
 };
 
-/// Returns the cable displacements at the spools at motor positions 0, m, if the arm has the shape `state` at
-/// the motor positions `positions`, microsteps, after its tendons were pulled in. For nominal positions,
+/// Returns the cable displacements at the spools at motor positions 0, m. At the motor positions `positions`,
+/// microsteps, the arm has the shape `state`, and its tendons were pulled in last. For nominal positions,
 /// these displacements are 0 up to rounding. Throws the exceptions of nominal_positions().
 [[nodiscard]] std::vector<double> displacements_at_zero(const Arm& arm, const Drive& drive,
                                                         const ArmState& state,
@@ -79,9 +79,9 @@ class DrivenArm : public ArmPort {
 [[nodiscard]] TendonDisplacements displacements_carried(const Drive& drive, const std::vector<double>& zero,
                                                         const std::vector<double>& carried);
 
-/// Returns the shape for spool positions `carried`, microsteps, positive in each motor's own direction, if
-/// friction takes no travel.
-/// `zero`: displacements at spool positions 0, m. Throws std::invalid_argument if the numbers of axes differ.
+/// Returns the shape for spool positions `carried`, microsteps, positive in each motor's own direction.
+/// Neglects the travel that friction absorbs. `zero`: displacements at spool positions 0, m. Throws
+/// std::invalid_argument if the numbers of axes differ.
 [[nodiscard]] ArmState shape_carried(const Arm& arm, const Drive& drive, const std::vector<double>& zero,
                                      const std::vector<double>& carried);
 

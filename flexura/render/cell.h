@@ -79,8 +79,8 @@ void cover_stripes(const Tracer& tracer, const Ray& middle, double half, const S
 enum class Verdict { uniform, divided, unclear };
 
 /// Classifies a square with sides of length 2 half, px, around `center`, px from the pixel's ray. Uses the
-/// trace `here` in the square's middle and, if needed, a few more rays. With `is_last`, returns the best
-/// guess instead of `unclear`.
+/// trace `here` in the square's middle and, if needed, a few more rays. If `is_last` is true, returns the
+/// best guess instead of `unclear`.
 [[nodiscard]] Verdict judge(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center,
                             double half, const Trace& here, bool is_last, Division& division);
 

@@ -262,6 +262,7 @@ View view_of_origin(TestRandom& random) {
                            random.uniform(80, 250));
   Intrinsics lens = view.lens.intrinsics();
   if (random.integer(0, 1) == 0) lens.distortion = {-0.2, 0.05, 0.001, 0.001, 0};
+  if (random.integer(0, 3) == 0) lens.distortion = {0.05, 0.01, 0, 0};
   view.lens = Lens(lens);
   return view;
 }

@@ -98,6 +98,9 @@ TEST(QuickPicture, AgreesWithTheExactWayInAllKindsOfScenes) {
     Intrinsics intrinsics = view.lens.intrinsics();
     intrinsics.fy *= random.uniform(0.5, 2);
     if (random.integer(0, 1) == 1) intrinsics.distortion[0] = random.uniform(-0.2, 0.2);
+    if (random.integer(0, 3) == 0) intrinsics.distortion = {random.uniform(-0.1, 0.1), 0.01, 0, 0};
+    if (random.integer(0, 5) == 0)
+      intrinsics.distortion = {-0.1, 0, 0, 0, 0, random.uniform(-0.1, 0.2), 0, 0};
     view.lens = Lens(intrinsics);
     Scene scene = busy_scene(random, backbone, view);
     for (MarkerRing& ring : scene.arm.markers) ring.albedo = {0.9, 0.9, 0.9};

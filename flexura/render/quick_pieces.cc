@@ -165,8 +165,8 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   const Eigen::Vector3d center = piece.p_CP + piece.R_CP * piece.bound_center;
   const Eigen::Vector3d chord = (end - piece.p_CP).normalized();
   const double slant = chord.dot(center.normalized());
-  // Around the middle between chord and arc. The skin extends beyond the chord's ends for two reasons: the
-  // planes there are tilted, and a ray needs some way from the axis to the skin.
+  // The bounding volume is centred between chord and arc. The skin extends beyond the chord's ends for two
+  // reasons: the planes there are tilted, and a ray needs some way from the axis to the skin.
   const double turn = piece.curvature * piece.length, sagitta = piece.length * turn / 8;
   const Eigen::Vector3d chord_P = piece.bound_center.normalized();
   const Eigen::Vector3d aside = piece.R_CP * Eigen::Vector3d(-chord_P.z(), 0, chord_P.x()) * (0.5 * sagitta);

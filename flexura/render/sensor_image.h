@@ -34,7 +34,7 @@ struct SensorRows {
   std::vector<std::uint8_t> is_plain, is_even, is_known, is_needed;
   std::vector<BlockWork> work;       ///< Work for each block.
   std::vector<const float*> window;  ///< Rows that the PSF combines for the current row, in order.
-  /// Light and levels of the current row, with the length rounded up to whole blocks.
+  /// Light and levels of the current row. The length of both arrays is rounded up to whole blocks.
   std::vector<float> light, levels;
   std::vector<std::uint8_t> bytes;  ///< Levels of the current row, for sensors of up to 8 bits.
 };

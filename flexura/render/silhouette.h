@@ -35,9 +35,10 @@ struct Outline {
 /// Returns the arm's outline curves as seen by the prepared renderer's camera. Points are about `step` px
 /// apart, with at least 8 and at most 2000 points per arc. The first curves are contours, in order of s. Each
 /// part of the arm whose side can be tangent to rays has two contours, one on each side. If such a part
-/// begins or ends within the arm, its two contours share this point. After the contours, the closed rims of
-/// flat ends follow, which start at angle 0. The outline of a round tip is a contour at s = L. The result is
-/// empty without an arm. Throws std::invalid_argument for a step that is not positive.
+/// begins or ends between the arm's ends, its two contours meet at the point where it begins or ends. After
+/// the contours come the closed rims of flat ends, which start at angle 0. The outline of a round tip is a
+/// contour at s = L. The result is empty without an arm. Throws std::invalid_argument for a step that is not
+/// positive.
 [[nodiscard]] std::vector<Outline> outlines(const Renderer& renderer, double step = 1);
 
 }  // namespace flexura

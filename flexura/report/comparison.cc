@@ -8,8 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "embedded/figure_css.h"
-#include "embedded/report_css.h"
 #include "flexura/report/page.h"
 #include "flexura/report/svg.h"
 
@@ -62,31 +60,18 @@ LineChart overlaid_chart(std::string heading, std::string label, double least, c
 
 std::string comparison_html(const ComparisonData& data) {
   std::string figures, notes;
-  for (const ReportFigure& figure : data.figures) {
-    const auto* drawing = std::get_if<Drawing>(&figure.content);
-    figures += fmt::format(
-        "<figure id=\"picture-{}\">\n{}</figure>\n", figure.name,
-        inline_svg(drawing != nullptr ? *drawing : chart_picture(std::get<LineChart>(figure.content))));
-  }
+  for (const ReportFigure& figure : data.figures) figures += picture_html(figure);
   for (const std::string& note : data.notes)
     notes += fmt::format("<p class=\"note\">{}</p>\n", xml_escape(note));
-  const std::string title = xml_escape(data.a + " and " + data.b);
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
-      "{} "
-      "{}; base-uri 'none'; form-action 'none'\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n"
-      "<title>{} - Flexura</title>\n<style>{}</style>\n<style>{}</style>\n</head>\n<body>\n<header>\n"
-      "<p class=\"maker\">Flexura {}</p>\n<h1>{}</h1>\n</header>\n<main>\n<dl class=\"summary\">\n{}</dl>\n{}"
-      "<section aria-labelledby=\"values-title\">\n<h2 id=\"values-title\">Values that differ</h2>\n{}"
-      "</section>\n<section aria-labelledby=\"charts-title\">\n<h2 id=\"charts-title\">Over time</h2>\n"
-      "<div class=\"charts\">\n{}</div>\n</section>\n</main>\n</body>\n</html>\n",
-      csp_hash(embedded::figure_css_sha256), csp_hash(embedded::report_css_sha256), title,
-      embedded::figure_css, embedded::report_css, xml_escape(data.version), title,
-      run_html("A", data.a, data.headline_a) + run_html("B", data.b, data.headline_b), notes,
-      data.table.rows.empty() ? "<p>None.</p>\n" : table_html(data.table), figures);
+  return plain_page(
+      data.a + " and " + data.b, data.version,
+      fmt::format(
+          "<dl class=\"summary\">\n{}</dl>\n{}"
+          "<section aria-labelledby=\"values-title\">\n<h2 id=\"values-title\">Values that differ</h2>\n{}"
+          "</section>\n<section aria-labelledby=\"charts-title\">\n<h2 id=\"charts-title\">Over time</h2>\n"
+          "<div class=\"charts\">\n{}</div>\n</section>\n",
+          run_html("A", data.a, data.headline_a) + run_html("B", data.b, data.headline_b), notes,
+          data.table.rows.empty() ? "<p>None.</p>\n" : table_html(data.table), figures));
 }
 
 }  // namespace flexura

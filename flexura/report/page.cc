@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "embedded/figure_css.h"
+#include "embedded/report_css.h"
 #include "flexura/model/arm_model.h"
 
 namespace flexura {
@@ -94,6 +96,27 @@ std::string figure_html(const ReportFigure& figure) {
   return fmt::format(
       "<figure id=\"picture-{}\">\n{}</figure>\n", figure.name,
       drawing != nullptr ? inline_svg(*drawing) : chart_html(std::get<LineChart>(figure.content)));
+}
+
+std::string picture_html(const ReportFigure& figure) {
+  const auto* drawing = std::get_if<Drawing>(&figure.content);
+  return fmt::format(
+      "<figure id=\"picture-{}\">\n{}</figure>\n", figure.name,
+      inline_svg(drawing != nullptr ? *drawing : chart_picture(std::get<LineChart>(figure.content))));
+}
+
+std::string plain_page(std::string_view title, std::string_view version, std::string_view main) {
+  const std::string escaped = xml_escape(title);
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
+      "{} {}; base-uri 'none'; form-action 'none'\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n"
+      "<title>{} - Flexura</title>\n<style>{}</style>\n<style>{}</style>\n</head>\n<body>\n<header>\n"
+      "<p class=\"maker\">Flexura {}</p>\n<h1>{}</h1>\n</header>\n<main>\n{}</main>\n</body>\n</html>\n",
+      csp_hash(embedded::figure_css_sha256), csp_hash(embedded::report_css_sha256), escaped,
+      embedded::figure_css, embedded::report_css, xml_escape(version), escaped, main);
 }
 
 std::string table_html(const ChapterTable& table) {

@@ -17,6 +17,13 @@ namespace flexura {
 /// `hex`.
 [[nodiscard]] std::string csp_hash(std::string_view hex);
 
+/// Returns a page with the report's styles that loads no other file and runs no script. `title` and `version`
+/// are any texts; `main` is the HTML of its main part.
+[[nodiscard]] std::string plain_page(std::string_view title, std::string_view version, std::string_view main);
+
+/// Returns the HTML element of a figure as a picture.
+[[nodiscard]] std::string picture_html(const ReportFigure& figure);
+
 /// Returns the HTML element of a figure. A drawing is an SVG picture. A chart is its heading, legend and
 /// numbers as JSON, which the page's script plots.
 [[nodiscard]] std::string figure_html(const ReportFigure& figure);

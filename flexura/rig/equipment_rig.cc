@@ -145,9 +145,9 @@ class EquipmentRig : public Rig {
   RigEquipment equipment_;
   RealDevices devices_;
   std::optional<WallClock> clock_;  // Of the run.
-  std::unique_ptr<ArmEquipment> arm_;
   ViscaBuses buses_;
   std::vector<std::unique_ptr<CameraDevices>> cameras_;
+  std::unique_ptr<ArmEquipment> arm_;  // The last: the arm is halted first.
 };
 
 }  // namespace

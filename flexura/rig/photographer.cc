@@ -31,18 +31,45 @@ View row_view(const View& view, int v) {
 }  // namespace
 
 Photographer::Photographer(const Setup& setup)
-    : maker_(setup.true_rig().arm.arm(), setup.true_rig().arm.look, setup.true_stand(), setup.obstacle) {}
+    : setup_(setup),
+      maker_(setup.true_rig().arm.arm(), setup.true_rig().arm.look, setup.true_stand(), setup.obstacle) {}
 
 const Sensor& Photographer::sensor(const Shot& shot) {
   const auto found = sensors_.find(shot.camera);
   return found != sensors_.end() ? found->second : sensors_.emplace(shot.camera, *shot.sensor).first->second;
 }
 
+const Image<float>& Photographer::backdrop(std::size_t camera) {
+  const auto found = backdrops_.find(camera);
+  if (found != backdrops_.end()) return found->second;
+  return backdrops_.emplace(camera, backdrop_light(setup_, camera)).first->second;
+}
+
+// Before a white ground, a pixel has the light of the things plus the share of the ground that they leave
+// visible. `first_row`: row of the backdrop that is the picture's first.
+void Photographer::draw_backdrop(const Image<float>& behind, const View& view, PixelKind pixels,
+                                 int first_row) {
+  scene_.background = Color::Zero();
+  renderer_.render(scene_, view, pixels, instant_);
+  scene_.background = Color::Ones();
+  renderer_.render(scene_, view, pixels, on_white_);
+  for (int v = 0; v < view.height; ++v) {
+    const auto things = instant_.light.row(v), white = on_white_.light.row(v);
+    const auto ground = behind.row(first_row + v);
+    for (std::size_t i = 0; i < things.size(); ++i) things[i] += (white[i] - things[i]) * ground[i];
+  }
+}
+
 void Photographer::draw(const Shot& shot, double time, const Rows& rows, Image<float>& light) {
   const View view = shot.view(time);
   const bool is_one_row = rows.last == rows.first + 1;
-  renderer_.render(maker_.scene(shot.backbone(time)), is_one_row ? row_view(view, rows.first) : view,
-                   shot.sensor->pixels, instant_);
+  const View drawn = is_one_row ? row_view(view, rows.first) : view;
+  scene_ = maker_.scene(shot.backbone(time));
+  const Image<float>& behind = backdrop(shot.camera);
+  if (behind.values().empty())
+    renderer_.render(scene_, drawn, shot.sensor->pixels, instant_);
+  else
+    draw_backdrop(behind, drawn, shot.sensor->pixels, is_one_row ? rows.first : 0);
   for (int v = rows.first; v < rows.last; v += rows.step)
     std::ranges::copy(instant_.light.row(is_one_row ? 0 : v), light.row(v).begin());
 }

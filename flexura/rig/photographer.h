@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <map>
+#include <vector>
 
 #include "flexura/model/backbone.h"
 #include "flexura/port/camera_port.h"
@@ -29,13 +30,18 @@ class Photographer {
   [[nodiscard]] const Sensor& sensor(const Shot& shot);
   void gather(const Shot& shot);
   void draw(const Shot& shot, double time, const Rows& rows, Image<float>& light);
+  [[nodiscard]] const Image<float>& backdrop(std::size_t camera);
+  void draw_backdrop(const Image<float>& behind, const View& view, PixelKind pixels, int first_row);
 
+  Setup setup_;
   SceneMaker maker_;
   Renderer renderer_;
-  LightImage instant_;
+  Scene scene_;
+  LightImage instant_, on_white_;
   Image<float> light_, scratch_;
   SensorRows rows_;
-  std::map<std::size_t, Sensor> sensors_;  // Sensor of each camera.
+  std::map<std::size_t, Sensor> sensors_;          // Sensor of each camera.
+  std::map<std::size_t, Image<float>> backdrops_;  // Of each camera; empty: none.
 };
 
 }  // namespace flexura

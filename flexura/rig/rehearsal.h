@@ -13,7 +13,7 @@
 
 namespace flexura {
 
-/// Numbers of pictures of a rehearsed camera.
+/// Counts of the pictures of a camera in a rehearsal.
 struct RehearsedPictures {
   std::int64_t sent = 0;     ///< Number of pictures sent to a program.
   std::int64_t skipped = 0;  ///< Number of pictures that were not rendered because the computer is too slow.

@@ -17,7 +17,8 @@ namespace {
 
 // Returns a controller whose axes have the limits of the drive's motors.
 GrblDeviceConfig controller_of(const std::vector<Axis>& axes) {
-  // A real controller has limits, also where the file has none: microsteps/s, microsteps/s^2.
+  // Limits of axes for which the file has none, because a real controller always has limits: microsteps/s,
+  // microsteps/s^2.
   constexpr double fastest = 5e4, quickest = 5e5, seconds = 60;
   constexpr int microsteps_a_mm = 100, rate_of_x = 110, acceleration_of_x = 120, steps_of_x = 100;
   GrblDeviceConfig config;

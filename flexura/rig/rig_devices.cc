@@ -52,6 +52,17 @@ std::unique_ptr<HeadPort> open_onvif(OnvifConfig config, DeviceAccess& access) {
   return value_or_throw(open_onvif_head(config, access.clock(), share, connect));
 }
 
+// Returns whether a function ends without an exception.
+template <class Function>
+bool succeeds(const Function& function) noexcept {
+  try {
+    function();
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 ArmEquipment::ArmEquipment(const RigEquipment& equipment, const ArmSetup& setup, DeviceAccess& access)
@@ -67,7 +78,11 @@ ArmEquipment::ArmEquipment(const RigEquipment& equipment, const ArmSetup& setup,
     can_.emplace(*link_, access.clock(), *equipment.cia402);
     if (guard != nullptr) guard->protect(*link_, cia402_stop(*equipment.cia402));
     value_or_throw(can_->start());
-    if (is_homed) value_or_throw(can_->home());
+    if (is_homed) {
+      value_or_throw(can_->home());
+    } else {
+      check_declared(value_or_throw(can_->read()).values);
+    }
     parts.push_back(&*can_);
   }
   std::size_t first = 0;
@@ -110,8 +125,26 @@ void ArmEquipment::start(double time_shift) {
   arm_.emplace(*drive_, setup_.arm, *setup_.drive, setup_.initial);
 }
 
+// The positions of CAN drives cannot be declared: their first command would move the arm to the initial
+// shape, as fast as they can.
+void ArmEquipment::check_declared(const std::vector<double>& positions) const {
+  constexpr double same = 2;  // Microsteps.
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (!(std::abs(positions[i] - rest_.at(i)) <= same))
+      throw std::runtime_error(fmt::format(
+          "start: axis {} of the CAN drives is at {:.0f} microsteps, but at {:.0f} in the initial shape: "
+          "expected start = \"homed\", or an arm in its initial shape",
+          i + 1, positions[i], rest_[i]));
+}
+
 ArmEquipment::~ArmEquipment() {
   if (drive_ == nullptr) return;
+  // The guard may be gone. Then the arm must be halted all the same.
+  (void)succeeds([this] { finish(); });
+  (void)succeeds([this] { (void)drive_->halt(); });
+}
+
+void ArmEquipment::finish() {
   // Controllers follow commands with a delay. The end of a run lets them arrive; a failure does not.
   constexpr double longest_delay = 1;
   ClockPort& clock = access_.clock();
@@ -121,7 +154,6 @@ ArmEquipment::~ArmEquipment() {
     if (!reading || !reading.value().moving) break;
     clock.wait_until(clock.now() + between_reads);
   }
-  (void)drive_->halt();
 }
 
 void ArmEquipment::beat() {

@@ -50,6 +50,10 @@ class ArmEquipment {
 
  private:
   void guard_drive(double time_shift);
+  // Throws unless the CAN drives are where the initial shape needs them.
+  void check_declared(const std::vector<double>& positions) const;
+  // Lets commanded motions end.
+  void finish();
   void pull_in();
   void move_slowly(const std::vector<double>& targets);
 

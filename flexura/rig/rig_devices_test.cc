@@ -1,13 +1,16 @@
 // The way from shapes to motors, with the drivers of controllers, in simulated time.
 #include "flexura/rig/rig_devices.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
+#include "flexura/equipment/dry_devices.h"
 #include "flexura/kinematics/tendons.h"
 #include "tests/support/grbl_bench.h"
 
@@ -27,10 +30,8 @@ class SteppedDevices : public DeviceAccess {
       // The backlash is taken up for pulling in at first.
       if (spools_.empty()) spools_ = motors;
       for (std::size_t i = 0; i < motors.size(); ++i) {
-        fastest_ = std::max(fastest_, last_.empty() ? 0 : std::abs(motors[i] - last_[i]));
         spools_[i] = std::clamp(spools_[i], motors[i], motors[i] + play_);
       }
-      last_ = motors;
     };
     return std::unique_ptr<Link>(std::move(link));
   }
@@ -52,16 +53,13 @@ class SteppedDevices : public DeviceAccess {
   void pass(double duration) { link_->pass(duration); }
   [[nodiscard]] const std::vector<double>& spools() const { return spools_; }
   [[nodiscard]] std::vector<double> motors() { return device_.positions(clock_.now()); }
-  // Returns the most microsteps in a tick.
-  [[nodiscard]] double fastest() const { return fastest_; }
-  void forget_speed() { fastest_ = 0; }
 
  private:
   SteppedClock clock_;
   GrblDevice device_;
   SteppedLink* link_ = nullptr;
-  double play_, fastest_ = 0;
-  std::vector<double> spools_, last_;
+  double play_;
+  std::vector<double> spools_;
 };
 
 GrblDeviceConfig fast_board() {
@@ -152,12 +150,33 @@ TEST(ArmEquipment, PullsTendonsInSlowlyAfterHoming) {
   EXPECT_EQ(reading.value().positions, (std::vector<std::int64_t>{0, 0, 0}));
   EXPECT_EQ(reading.value().state, setup.initial);
   // The motors have turned by the distance from the switches: home is at another place of the controller.
-  devices.forget_speed();
   ArmState bent = setup.initial;
   bent.bends[0] = {0.01, 0};
   ASSERT_TRUE(arm.arm().command(bent, 1));
   devices.pass(3);
   EXPECT_NE(devices.motors(), at_rest);
+}
+
+TEST(ArmEquipment, ChecksTheDeclaredPositionsOfCanDrives) {
+  const ArmSetup setup(three_tendons(0));
+  RigEquipment equipment;
+  equipment.cia402.emplace();
+  for (int node = 1; node <= 3; ++node) equipment.cia402->axes.emplace_back().node = node;
+  const auto start_at = [&](const std::vector<double>& motors) {
+    DryDevices devices(equipment, motors, {}, [](const DryMessage& /*message*/) {});
+    ArmEquipment arm(equipment, setup, devices);
+    arm.start();
+    return arm.drive().read().value().values;
+  };
+  std::vector<double> motors = start_at({0, 0, 0});
+  EXPECT_EQ(motors, (std::vector<double>{0, 0, 0}));
+  try {
+    (void)start_at({0, 12345, 0});
+    FAIL() << "the first command would move the second motor by 12345 microsteps";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("axis 2 of the CAN drives is at 12345 microsteps, but at 0"));
+  }
 }
 
 // The pull is not faster than the file says: measured from the end of the homing.

@@ -46,6 +46,7 @@ void check_setup(const Setup& setup, Reader& reader) {
   if (setup.camera.empty()) check_default_cameras(setup, reader);
   if (setup.drive) check_drive(*setup.drive, setup.arm, "drive", reader);
   check_cameras(setup.camera, "camera", reader);
+  check_seeing(setup, reader);
   if (setup.stand.camera_distances && !setup.camera.empty())
     reader.problem_at("stand.camera_distances",
                       "applies only to the default cameras: expected no [[camera]]");

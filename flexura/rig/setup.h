@@ -14,6 +14,7 @@
 #include "flexura/model/drive_config.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/model/stand.h"
+#include "flexura/rig/seeing_config.h"
 #include "flexura/sim/rig_config.h"
 
 namespace flexura {
@@ -57,7 +58,9 @@ struct Setup {
       drive;  ///< Drive of the arm; missing: bends follow commands at the rates of the arm.
   std::vector<ObstacleConfig> obstacle;
   StandConfig stand;
-  std::vector<CameraConfig> camera;  ///< Cameras; empty: the paper's two cameras (see cameras()).
+  std::vector<CameraConfig> camera;      ///< Cameras; empty: the paper's two cameras (see cameras()).
+  std::vector<SeeingConfig> seeing;      ///< What separates the arm from its surroundings, by camera.
+  std::vector<BackdropConfig> backdrop;  ///< Pictures behind everything else, by simulated camera.
   std::optional<TruthConfig> truth;  ///< Differences of the simulated world from the model; missing: none.
   std::optional<RigEquipment>
       equipment;  ///< Real equipment that executes the experiment; missing: the experiment is simulated.

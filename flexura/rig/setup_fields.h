@@ -43,6 +43,14 @@ template <std::derived_from<Setup> S>
                  {.meaning = "Cameras.",
                   .count = {0, max_cameras},
                   .default_text = "two: \"front\" on +Z and \"side\" on -X; both show the arm's whole reach"})
+          .field("seeing", &Setup::seeing,
+                 {.meaning = "What separates the arm from its surroundings in the cameras' pictures.",
+                  .count = {0, max_cameras},
+                  .default_text = "brightness alone"})
+          .field("backdrop", &Setup::backdrop,
+                 {.meaning = "Pictures that simulated cameras see behind everything else.",
+                  .count = {0, max_cameras},
+                  .default_text = "none"})
           .field(
               "truth", &Setup::truth,
               {.meaning = "True values of the simulated world that differ from the models which tasks use.",

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -23,7 +24,7 @@
 namespace flexura {
 namespace {
 
-Node numbers(std::initializer_list<double> values) {
+Node numbers(std::span<const double> values) {
   Node::Array entries;
   for (const double value : values) entries.push_back(number_node(value));
   return {std::move(entries), {}};
@@ -31,12 +32,11 @@ Node numbers(std::initializer_list<double> values) {
 
 // Null if the lens does not show the point.
 Node pixel_node(const std::optional<Eigen::Vector2d>& pixel) {
-  return pixel ? numbers({pixel->x(), pixel->y()}) : Node{};
+  return pixel ? numbers(std::span(pixel->data(), 2)) : Node{};
 }
 
 Node camera_node(const View& view) {
   const Intrinsics& lens = view.lens.intrinsics();
-  const auto [k1, k2, p1, p2, k3] = lens.distortion;
   const std::optional<double> roll = roll_of(view.X_WC.rotation);
   return {Node::Table{{"width", {}, {std::int64_t{view.width}, {}}},
                       {"height", {}, {std::int64_t{view.height}, {}}},
@@ -44,7 +44,8 @@ Node camera_node(const View& view) {
                       {"fy", {}, {lens.fy, {}}},
                       {"cx", {}, {lens.cx, {}}},
                       {"cy", {}, {lens.cy, {}}},
-                      {"distortion", {}, numbers({k1, k2, p1, p2, k3})},
+                      {"model", {}, {flexura::name_of(lens.distortion.model()), {}}},
+                      {"distortion", {}, numbers(lens.distortion)},
                       {"pose", {}, pose_node(view.X_WC)},
                       {"roll", {}, roll ? number_node(*roll) : Node{}}},
           {}};
@@ -112,8 +113,7 @@ Node markers_node(const Renderer& renderer) {
     Node::Table members = axis_members(marker.center);
     members.push_back({"area", {}, {marker.area, {}}});
     const bool is_seen = marker.area > 0;
-    members.push_back(
-        {"centroid", {}, is_seen ? numbers({marker.centroid.x(), marker.centroid.y()}) : Node{}});
+    members.push_back({"centroid", {}, is_seen ? numbers(std::span(marker.centroid.data(), 2)) : Node{}});
     list.push_back({std::move(members), {}});
   }
   return {std::move(list), {}};

@@ -259,7 +259,7 @@ void report_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double
   };
   say(&AxisNotes::has_single_steps,
       "motor speed and step rate of {}: a single microstep in a clock step of {:.6g} s already exceeds the "
-      "limit; it is accepted if the motion before rounding is within the limit");
+      "limit. The motion is accepted if it is within the limit before rounding");
   say(&AxisNotes::is_rounded_over,
       "motor speed and step rate of {}: the motion is within the limit, but exceeds it after rounding, by up "
       "to one microstep in {:.6g} s");
@@ -268,7 +268,8 @@ void report_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double
       "shorter step requires a higher speed and acceleration");
   say(&AxisNotes::is_over_while_steered,
       "motors of {}: during a servo, speeds and accelerations are checked without backlash and rounding, as "
-      "in the limiter; with both, the commands exceed a limit within one clock step, {:.6g} s");
+      "in the limiter. With backlash and rounding, the commands exceed a limit within one clock step, "
+      "{:.6g} s");
 }
 
 }  // namespace

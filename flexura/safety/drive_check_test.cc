@@ -202,7 +202,7 @@ TEST_F(DriveCheck, LetsSingleMicrostepsPassWhereARowIsTooShortForOne) {
   EXPECT_EQ(
       slow.caveats[0],
       "motor speed and step rate of 1.1: a single microstep in a clock step of 0.01 s already exceeds the "
-      "limit; it is accepted if the motion before rounding is within the limit");
+      "limit. The motion is accepted if it is within the limit before rounding");
   EXPECT_FALSE(check_bend(1.3).is_safe()) << "0.62 a row";
   drive_.axes[0].motor.max_step_rate = 1 / step;
   EXPECT_TRUE(check_bend(1).caveats.empty()) << "one a row is within the limit";

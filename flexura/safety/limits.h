@@ -19,7 +19,7 @@ struct LimitWatch {
   Hazard hazard = Hazard::bend;
   std::size_t section = 0;  ///< Index of the section; 0 at the base.
   double limit = 0;         ///< Limit for messages, in the hazard's unit.
-  double sign = 1;          ///< Sign of the limit: 1 for an upper limit, -1 for a lower limit.
+  double sign = 1;          ///< Direction of the limit: 1 for an upper limit, -1 for a lower limit.
   std::function<double(const ArmState& state)> value;  ///< Returns the limited value in the hazard's unit.
   /// Returns a bound on |d value/dt| during [start, end], s, of a motion with known bounds on its rates.
   std::function<double(const Motion& motion, double start, double end)> rate;

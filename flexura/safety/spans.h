@@ -87,8 +87,8 @@ struct FoundSpans {
 /// quantity is above the limit at its ends or middle. Any other undecided interval counts as below the limit
 /// if its upper bound exceeds the limit by at most search.value. Hence a missed violation is shorter than
 /// half of search.time and exceeds the limit by at most search.value. The ends of spans are accurate to
-/// search.time. An interval that is too short to halve (`shortest_interval`) counts as above the limit,
-/// unless it is proved to be below.
+/// search.time. An interval that is too short to halve (`shortest_interval`) counts as above the limit if its
+/// upper bound is above the limit.
 ///
 /// Intervals are processed by decreasing length, and either all or none of the intervals of one length are
 /// evaluated. If the number of intervals reaches its limit, undecided times are therefore sampled evenly.

@@ -46,7 +46,10 @@ ArmState ModelLaw::command(const Times& times, const ArmState& sent, const ArmSt
   if (modal_) return modal_->step(state, by_command);
   const ServoObservation& observed = *observer.last();
   state.limits = limits_.find(sent, state.rest, by_command, {observed.seen[0].view, observed.seen[1].view});
-  return predictive_->step(state, by_command);
+  const ArmState command = predictive_->step(state, by_command);
+  const std::optional<std::size_t> active = predictive_->active_limit();
+  limit_ = active ? state.limits[*active].name : "";
+  return command;
 }
 
 }  // namespace flexura

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "flexura/control/modal_law.h"
 #include "flexura/control/predictive_law.h"
@@ -26,6 +27,9 @@ class ModelLaw {
   /// last two commands.
   [[nodiscard]] ArmState command(const Times& times, const ArmState& sent, const ArmState& before,
                                  const ShapeObserver& observer, const ServoGoals& goals);
+  /// Returns which limit of the law restricted the last command, in addition to those of bends and rates; ""
+  /// if none did.
+  [[nodiscard]] const std::string& limit() const { return limit_; }
 
  private:
   ArmModel model_;
@@ -34,6 +38,7 @@ class ModelLaw {
   std::optional<PredictiveLaw> predictive_;
   std::optional<ModalLaw> modal_;
   PredictiveLimits limits_;
+  std::string limit_;
 };
 
 }  // namespace flexura

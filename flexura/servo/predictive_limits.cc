@@ -1,9 +1,13 @@
 #include "flexura/servo/predictive_limits.h"
 
+#include <fmt/format.h>
+
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "flexura/kinematics/jacobian.h"
@@ -53,8 +57,7 @@ std::vector<PredictiveLimit> PredictiveLimits::find(const ArmState& sent, const 
   if (!by_command.allFinite() || !is_possible(rest)) return limits;
   add_tensions(sent, limits);
   add_clearances(rest, by_command, limits);
-  if (keeps_view_)
-    for (const View& view : views) add_borders(rest, by_command, view, limits);
+  for (std::size_t i = 0; keeps_view_ && i < 2; ++i) add_borders(rest, by_command, i, views[i], limits);
   return limits;
 }
 
@@ -66,7 +69,8 @@ void PredictiveLimits::add_tensions(const ArmState& sent, std::vector<Predictive
   for (Eigen::Index i = 0; i < now.tensions.size(); ++i) {
     const double most = most_tension_[static_cast<std::size_t>(i)];
     if (std::isfinite(most) && now.by_command.row(i).allFinite())
-      limits.push_back({now.by_command.row(i), most - now.tensions[i]});
+      limits.push_back(
+          {now.by_command.row(i), most - now.tensions[i], fmt::format("the tension of tendon {}", i + 1)});
   }
 }
 
@@ -76,12 +80,16 @@ void PredictiveLimits::add_clearances(const ArmState& rest, const Eigen::MatrixX
   for (const ContactWatch& watch : contacts_)
     if (const auto slope = clearance_slope(watch, model_.shaped(), rest, near * length);
         slope && slope->by_state.allFinite())
-      limits.push_back({-slope->by_state * by_command, slope->clearance - margin * length});
+      limits.push_back({-slope->by_state * by_command, slope->clearance - margin * length,
+                        watch.hazard() == Hazard::obstacle
+                            ? fmt::format("the clearance from {}", watch.obstacle_name())
+                            : std::string("the clearance of the arm from itself")});
 }
 
 // Of the backbone's points, only the one limits that reaches a border first. Points that hardly move do not
 // count.
-void PredictiveLimits::add_borders(const ArmState& rest, const Eigen::MatrixXd& by_command, const View& view,
+void PredictiveLimits::add_borders(const ArmState& rest, const Eigen::MatrixXd& by_command,
+                                   std::size_t camera, const View& view,
                                    std::vector<PredictiveLimit>& limits) const {
   const BackboneJacobian jacobian(model_.shaped(), rest);
   Jacobian J(6, 3 * static_cast<Eigen::Index>(rest.bends.size()));
@@ -110,8 +118,13 @@ void PredictiveLimits::add_borders(const ArmState& rest, const Eigen::MatrixXd& 
         first[side] = PredictiveLimit{row, rooms[side]};
       }
     }
-  for (const auto& limit : first)
-    if (limit) limits.push_back(*limit);
+  constexpr std::array sides = {"left", "right", "upper", "lower"};
+  for (std::size_t side = 0; side < 4; ++side) {
+    if (!first[side]) continue;
+    first[side]->name = fmt::format("the {} border of the {} camera's picture", sides[side],
+                                    camera == 0 ? "first" : "second");
+    limits.push_back(*first[side]);
+  }
 }
 
 }  // namespace flexura

@@ -29,8 +29,8 @@ class PredictiveLimits {
   void add_tensions(const ArmState& sent, std::vector<PredictiveLimit>& limits) const;
   void add_clearances(const ArmState& rest, const Eigen::MatrixXd& by_command,
                       std::vector<PredictiveLimit>& limits) const;
-  void add_borders(const ArmState& rest, const Eigen::MatrixXd& by_command, const View& view,
-                   std::vector<PredictiveLimit>& limits) const;
+  void add_borders(const ArmState& rest, const Eigen::MatrixXd& by_command, std::size_t camera,
+                   const View& view, std::vector<PredictiveLimit>& limits) const;
 
   ArmModel model_;
   std::vector<double> most_tension_;    // Of each tendon, N; may be infinite.

@@ -40,6 +40,11 @@ const std::vector<std::string>& names_of(const ServoLawKind*) {
   return names;
 }
 
+const std::vector<std::string>& names_of(const ServoTracking*) {
+  static const std::vector<std::string> names = {"finder", "model"};
+  return names;
+}
+
 const std::vector<std::string>& names_of(const ServoMeasure*) {
   static const std::vector<std::string> names = {"picture", "flow"};
   return names;

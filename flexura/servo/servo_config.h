@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -19,6 +20,8 @@
 #include "flexura/model/obstacle.h"
 
 namespace flexura {
+
+struct ArmScene;
 
 /// Control law of a servo (docs/servo.md).
 enum class ServoLawKind : std::uint8_t {
@@ -54,6 +57,12 @@ enum class ServoMeasure : std::uint8_t {
          ///< angle in each new picture.
 };
 
+/// Way to find the arm in a picture.
+enum class ServoTracking : std::uint8_t {
+  finder,  ///< By its brightness, and by what separates it from its surroundings (ServoConfig::scenes).
+  model,   ///< The tube of the predicted shape is fitted to the pictures (TubeFitter); then as `finder`.
+};
+
 /// Source of the derivative of the arm's shape with respect to its drives. The derivatives of features with
 /// respect to the shape are always computed from the camera models.
 enum class ServoJacobian : std::uint8_t {
@@ -85,6 +94,7 @@ struct ServoCameraPrior : ViewPrior {
 /// Settings of a servo that a user chooses, in a file or in code.
 struct ServoSettings {
   ServoLawKind law = ServoLawKind::shape;
+  ServoTracking track = ServoTracking::finder;
   ServoMeasure measure = ServoMeasure::picture;  ///< Source of the chord angles, for laws that compare them.
   double anchor = 0.1;  ///< Time constant with which angles tracked by flow approach the measured angles, s.
   ServoJacobian jacobian = ServoJacobian::model;
@@ -133,11 +143,14 @@ struct ServoConfig : ServoSettings {
   /// to motor steps.
   std::optional<ArmState> sent = {};
   std::vector<Obstacle> obstacles = {};
+  /// What separates the arm from its surroundings, for both cameras; null: brightness alone.
+  std::array<std::shared_ptr<const ArmScene>, 2> scenes = {};
 };
 
 const Table<ServoCameraPrior>& fields_of(const ServoCameraPrior*);
 
 const std::vector<std::string>& names_of(const ServoLawKind*);
+const std::vector<std::string>& names_of(const ServoTracking*);
 const std::vector<std::string>& names_of(const ServoMeasure*);
 const std::vector<std::string>& names_of(const ServoJacobian*);
 

@@ -82,7 +82,7 @@ bool ServoLaw::find_error(const Input& input, const TargetShape& desired, Featur
 
 void ServoLaw::go_along(const ArmState& desired, const ArmState& next, ArmState& asked) {
   if (next == desired) return;
-  // A moving target's next shape is the shape desired at the next step, but for rounding of the time.
+  // The next shape of a moving target equals the target at the next step, except for rounding of the time.
   const bool is_known = next_ && is_equal_but_for_rounding(*next_, desired);
   const ArmState from = is_known ? next_command_ : actuation_.command(desired), to = actuation_.command(next);
   next_ = next, next_command_ = to;

@@ -52,7 +52,8 @@ class Session {
         features_(servo_features(config, nominal)),
         law_(nominal_arm_, config, *features_),
         keeper_(nominal, config.cameras) {
-    // A learned Jacobian is for models that are wrong, and swing that the model lacks would count as one.
+    // A learned Jacobian is used when the model is wrong. The watch would take a swing that the model lacks
+    // for a disturbance.
     const bool is_known =
         config.jacobian == ServoJacobian::model &&
         !nominal_arm_.actuation().swing(ArmState::straight(nominal_arm_.driven().sections.size()), 1).empty();
@@ -195,7 +196,9 @@ class Session {
       return false;
     }
     const bool was_seen = observer_.last() != nullptr;
-    const auto observed = std::make_shared<ServoObservation>(meter_.measure(*pair));
+    const auto observed = std::make_shared<ServoObservation>(meter_.measure(
+        *pair, config_.track == ServoTracking::model ? std::optional(observer_.prediction(pair->time()))
+                                                     : std::nullopt));
     TargetShape desired = goals_->at(observed->time - result_.start);
     observed->desired = std::move(desired.state), observed->desired_offset = std::move(desired.offset);
     const bool is_found = observer_.observe(observed, now);
@@ -242,6 +245,7 @@ class Session {
       const ArmState output = asked(now, step), slow = limiter_->within_braking(output, config_.rate);
       command = limiter_->next(slow);
       if (command.reason.empty()) command.reason = at_its_limit(output);
+      if (command.reason.empty() && model_law_) command.reason = model_law_->limit();
       if (command.reason.empty() && slow.bends != output.bends) command.reason = "the motors' acceleration";
     }
     if (observer_.blind_for(now) > config_.give_up_after)

@@ -194,7 +194,9 @@ const Table<ServoStep>& fields_of(const ServoStep*) {
           .field("fresh", &S::is_fresh, {.meaning = "Whether the pictures are new since the last command."})
           .field("singular", &S::is_singular,
                  {.meaning = "Whether the law is singular: some motion of the arm changes no feature."})
-          .part<Limited>("limited", {.meaning = "Why the limiter changed the law's command."});
+          .part<Limited>(
+              "limited",
+              {.meaning = "Why the limiter changed the law's command, or which limit restricts the law."});
   return table;
 }
 

@@ -43,7 +43,8 @@ struct ServoStep {
   double potential = 0;
   bool is_fresh = false;     ///< Whether the observation is new since the last step.
   bool is_singular = false;  ///< Whether the law is singular: some motion of the arm changes no feature.
-  std::string limited;       ///< Reason why the limiter changed the law's command, or "".
+  /// Reason why the limiter changed the law's command, or limit that restricts the law, or "".
+  std::string limited;
 
   // The following members are not in logs.
   double sigma =

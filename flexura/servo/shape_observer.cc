@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/estimate/tube_fit.h"
 #include "flexura/model/arm_difference.h"
 
 namespace flexura {
@@ -159,8 +160,33 @@ ArmState ShapeObserver::expected(ArmState driven) const {
 
 ArmState ShapeObserver::predicted(double time) const {
   ArmState driven = rig_.nominal(time);
-  return last_ ? plus(std::move(driven), minus(last_->estimate.shape.state, rig_.nominal(last_->time)))
-               : driven;
+  if (!last_) return driven;
+  return plus(std::move(driven), minus(last_->estimate.shape.state, rig_.nominal(last_->time)));
+}
+
+// Process noise and motion noise are those of the tracker, plus a little for what the model does not know.
+ShapePrediction ShapeObserver::prediction(double time) const {
+  constexpr double first_std = 0.1, least_std = 0.01, process_noise = 0.03, motion_noise = 0.1;
+  const std::array<ViewPrior, 2> views = {view_prior_, view_prior_};
+  ShapePrediction rough =
+      rough_prediction(prior_, Shape{prior_.arm, predicted(time)}, last_ ? least_std : first_std, views);
+  if (!last_) return rough;
+  const ShapeEstimate& before = last_->estimate;
+  if (before.covariance.rows() != rough.covariance.rows() || !before.covariance.allFinite()) return rough;
+  rough.mean.views = before.shape.views;
+  const ShapeVariables variables(prior_);
+  const Eigen::Index bends = variables.bends_a_section();
+  const double since = std::max(0.0, time - last_->time);
+  Eigen::VectorXd noise = Eigen::VectorXd::Zero(rough.covariance.rows());
+  for (std::size_t i = 0; i < before.shape.state.bends.size(); ++i) {
+    const double went = (rough.mean.state.bends[i] - before.shape.state.bends[i]).norm();
+    noise.segment(static_cast<Eigen::Index>(i) * bends, bends)
+        .setConstant(process_noise * process_noise * since + motion_noise * motion_noise * went * went +
+                     least_std * least_std);
+  }
+  rough.covariance = before.covariance;
+  rough.covariance.diagonal() += noise;
+  return rough;
 }
 
 double ShapeObserver::sigma() const { return relative_sigma(last_->estimate); }

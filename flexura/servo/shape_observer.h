@@ -46,6 +46,9 @@ class ShapeObserver {
   [[nodiscard]] double blind_for(double now) const { return now - seen_since_; }
   [[nodiscard]] double seen_since() const { return seen_since_; }
 
+  /// Returns the predicted shape at `time`, s, with a covariance that bounds the search in pictures. Before
+  /// the first observation, it is the model's shape for the drives' position.
+  [[nodiscard]] ShapePrediction prediction(double time) const;
   /// Returns the expected equilibrium shape of the arm: the last estimate without oscillation, changed by the
   /// drives' motion since then. `driven`: the model's shape for the drives' position.
   [[nodiscard]] ArmState expected(ArmState driven) const;

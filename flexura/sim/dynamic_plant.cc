@@ -114,6 +114,7 @@ void DynamicPlant::advance(double time) {
       const std::lock_guard lock(mutex_);
       go_on(then, time_of(then.index), time_of(next));
       hand_over(then, time_of(next));
+      audit(then, time_of(then.index), time_of(next));
     }
     then.index = next;
     snapshots_.push_back(std::move(then));
@@ -384,8 +385,12 @@ std::string DynamicPlant::warning(double time) const {
   if (snapshot(time).divided >= many)
     return fmt::format(
         "steps of {} s are too long for the motion of the arm: dividing them is slow and less accurate; "
-        "choose "
-        "a shorter arm.time_step",
+        "choose a shorter arm.time_step",
+        step_);
+  if (snapshot(time).audit.has_grown())
+    return fmt::format(
+        "the energy of the arm grows although nothing drives it: steps of {} s do not resolve the fastest "
+        "modes of its rods; choose a smaller arm.spectral_radius, a shorter arm.time_step, or fewer modes",
         step_);
   return {};
 }

@@ -13,6 +13,7 @@
 #include "flexura/mechanics/statics.h"
 #include "flexura/mechanics/surroundings.h"
 #include "flexura/sim/arm_setup.h"
+#include "flexura/sim/energy_audit.h"
 #include "flexura/sim/rod_plant.h"
 #include "flexura/sim/rotors.h"
 #include "flexura/sim/simulation_error.h"
@@ -56,6 +57,7 @@ class DynamicPlant : public RodPlant {
     RotorState rotors;
     std::vector<char> carried;  // For each payload, whether it is carried.
     int divided = 0;            // Number of steps up to here that did not converge at once.
+    EnergyAudit audit = {};
   };
   // Returns the last snapshot at or before a time.
   [[nodiscard]] const Snapshot& snapshot(double time) const;
@@ -66,6 +68,8 @@ class DynamicPlant : public RodPlant {
   void move(Snapshot& at, double from, double h) const;
   void step(Snapshot& at, double from, double h) const;
   void hand_over(Snapshot& at, double time) const;
+  void audit(Snapshot& at, double from, double to) const;
+  [[nodiscard]] bool is_driven(const Snapshot& at, double from, double to) const;
   void set_lengths(double time) const;
   [[nodiscard]] std::vector<double> events(double from, double to) const;
   void carry(const std::vector<char>& desired) const;

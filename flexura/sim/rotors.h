@@ -19,7 +19,7 @@ inline constexpr double rotor_time = 5e-3, fall_time = 5e-3;
 struct RotorState {
   std::vector<double> felt;    ///< Delayed tensions that act on the rotors, N.
   std::vector<double> behind;  ///< Current lag of each rotor behind its controller, microsteps.
-  /// Lag of each rotor at the end of its current fall-back: whole turns of the field, in microsteps.
+  /// Lag that each rotor will have when its fall-back ends: whole turns of the field, in microsteps.
   std::vector<double> lost;
 };
 

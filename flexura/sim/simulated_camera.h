@@ -34,8 +34,8 @@ using TakePicture = std::function<Picture(const Shot&)>;
 /// were lost, `newest` returns no frame.
 inline constexpr int frames_kept = 16;
 
-/// Returns the longest time after the start of its exposure at which a frame can be requested, s. Views and
-/// backbones must be available for this time in the past.
+/// Returns the longest time between the start of a frame's exposure and the last possible request for this
+/// frame, s. Views and backbones must be available for this time in the past.
 [[nodiscard]] double frame_horizon(const SensorConfig& sensor);
 
 /// A camera that exposes frames at its frame rate from time 0, delays frames and loses some frames. A

@@ -29,6 +29,7 @@ std::shared_ptr<const ByteBuffer> McapChunks::content(std::uint32_t chunk) const
     }
   }
   const Chunk& source = chunks_.at(chunk - 1U);
+  if (mapped_ != nullptr) mapped_->require_whole();
   std::shared_ptr<const ByteBuffer> content;
   try {
     content = std::make_shared<const ByteBuffer>(unzstd(source.frames, source.size));
@@ -36,6 +37,7 @@ std::shared_ptr<const ByteBuffer> McapChunks::content(std::uint32_t chunk) const
     throw std::runtime_error(name_ + ": byte " + std::to_string(source.frames.data() - file_.data()) +
                              ": a chunk does not decompress: " + error.what());
   }
+  if (mapped_ != nullptr) mapped_->has_read(source.frames.size());
   const std::scoped_lock lock(mutex_);
   held_.push_back({chunk, content});
   const auto held_bytes = [&] {
@@ -52,7 +54,11 @@ std::string McapChunks::text(std::uint32_t chunk, std::size_t offset, std::size_
     const auto part = bytes.subspan(offset, size);
     return std::string(reinterpret_cast<const char*>(part.data()), part.size());
   };
-  return chunk == plain ? copied(file_) : copied(content(chunk)->bytes());
+  if (chunk != plain) return copied(content(chunk)->bytes());
+  if (mapped_ != nullptr) mapped_->require_whole();
+  std::string text = copied(file_);
+  if (mapped_ != nullptr) mapped_->has_read(size);
+  return text;
 }
 
 }  // namespace flexura

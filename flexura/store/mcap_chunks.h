@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/store/mcap_file.h"
 #include "flexura/store/zstd.h"
 
 namespace flexura {
@@ -19,8 +20,10 @@ inline constexpr std::size_t mcap_most_chunk = std::size_t{128} << 20;
 /// its messages is read, and keeps the last few decompressed chunks. Several threads may read at once.
 class McapChunks {
  public:
-  /// `file`: the log, which must outlive this object. `name`: name of the log in errors.
-  McapChunks(std::span<const std::byte> file, std::string name) : file_(file), name_(std::move(name)) {}
+  /// `file`: the log, which must outlive this object. `name`: name of the log in errors. `mapped`: the file,
+  /// if the log is mapped; null otherwise.
+  McapChunks(std::span<const std::byte> file, std::string name, const MappedFile* mapped = nullptr)
+      : file_(file), name_(std::move(name)), mapped_(mapped) {}
 
   /// Chunk number of uncompressed messages, which are read directly from the file.
   static constexpr std::uint32_t plain = 0;
@@ -46,6 +49,7 @@ class McapChunks {
 
   std::span<const std::byte> file_;
   std::string name_;
+  const MappedFile* mapped_;
   std::vector<Chunk> chunks_;
   mutable std::mutex mutex_;        // Of held_.
   mutable std::vector<Held> held_;  // The last ones used, newest last.

@@ -10,9 +10,8 @@
 
 namespace flexura {
 
-/// Reads a part of a log byte by byte, beginning with the first byte of the part. Every read is checked
-/// against the part's end. Throws std::runtime_error with the log's name and the position in the log, in
-/// bytes, if a read exceeds the part.
+/// Reads numbers, texts and blocks of bytes from a range of a log, one after the other. A read beyond the end
+/// of the range throws std::runtime_error with the log's name and the position in the log, in bytes.
 class McapCursor {
  public:
   McapCursor(std::span<const std::byte> log, const std::string& name)
@@ -29,6 +28,7 @@ class McapCursor {
     return log_.subspan(from, position_ - from);
   }
 
+  /// Reads a number with the least significant byte first.
   template <std::unsigned_integral T>
   T take() {
     std::uint64_t value = 0;
@@ -37,12 +37,12 @@ class McapCursor {
     return static_cast<T>(value);
   }
   std::span<const std::byte> take_bytes(std::uint64_t count) { return take_part(count).rest(); }
-  /// Takes the next `count` bytes as a separate part.
+  /// Reads the next `count` bytes. Returns a cursor that can read only these bytes.
   McapCursor take_part(std::uint64_t count);
-  /// Takes a text preceded by its length.
+  /// Reads a text: its length in bytes (32 bits), then its bytes.
   std::string take_text();
 
-  /// Throws the error `what` at the current position, or at the position `at`.
+  /// Throws std::runtime_error with the message `what` and the current position, or the position `at`.
   [[noreturn]] void fail(const std::string& what) const { fail(what, position_); }
   [[noreturn]] void fail(const std::string& what, std::size_t at) const;
 

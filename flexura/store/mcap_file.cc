@@ -6,11 +6,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
-
-#include "flexura/base/descriptor.h"
 
 namespace flexura {
 namespace {
@@ -54,19 +53,32 @@ void AppendFile::close() {
   if (is_open() && ::close(std::exchange(descriptor_, -1)) != 0) fail(errno, "cannot close", path_);
 }
 
-MappedFile::MappedFile(const std::filesystem::path& path) {
-  // Opening a pipe without a writer would block forever.
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (!file) fail(errno, "cannot read", path);
+// Opening a pipe without a writer would block forever.
+MappedFile::MappedFile(const std::filesystem::path& path)
+    : name_(path.string()), file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+  if (!file_) fail(errno, "cannot read", path);
   struct stat status{};
-  if (::fstat(file.get(), &status) != 0) fail(errno, "cannot read", path);
+  if (::fstat(file_.get(), &status) != 0) fail(errno, "cannot read", path);
   if (S_ISDIR(status.st_mode)) fail(EISDIR, "cannot read", path);
   if (!S_ISREG(status.st_mode)) fail(EINVAL, "not a regular file:", path);
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) return;  // mmap refuses a length of zero.
-  void* const start = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.get(), 0);
+  void* const start = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file_.get(), 0);
   if (start == MAP_FAILED) fail(errno, "cannot read", path);
   bytes_ = {static_cast<const std::byte*>(start), size};
+}
+
+void MappedFile::require_whole() const {
+  struct stat status{};
+  if (::fstat(file_.get(), &status) != 0 || static_cast<std::size_t>(status.st_size) < bytes_.size())
+    throw std::runtime_error(name_ + " has become shorter since it was opened");
+}
+
+void MappedFile::has_read(std::size_t bytes) const {
+  if (read_.fetch_add(bytes) + bytes < window || bytes_.empty()) return;
+  read_ = 0;
+  // A failure leaves the pages in memory.
+  (void)::madvise(const_cast<std::byte*>(bytes_.data()), bytes_.size(), MADV_DONTNEED);
 }
 
 MappedFile::~MappedFile() {

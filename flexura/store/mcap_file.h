@@ -1,9 +1,13 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
+
+#include "flexura/base/descriptor.h"
 
 namespace flexura {
 
@@ -37,7 +41,8 @@ class AppendFile {
   std::uint64_t size_ = 0;
 };
 
-/// Content of a file, mapped into memory: only the accessed pages are read.
+/// Content of a file, mapped into memory: only the accessed pages are read. Pages that are no longer needed
+/// can be released, so that a large file that is read once occupies little memory.
 class MappedFile {
  public:
   /// Throws std::system_error with the path if the file cannot be read or is not a regular file.
@@ -50,8 +55,20 @@ class MappedFile {
   /// exists.
   [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
 
+  /// Bytes after which the pages are released.
+  static constexpr std::size_t window = std::size_t{8} << 20;
+  /// Throws std::runtime_error if the file has become shorter, so that its last bytes cannot be read. A file
+  /// that is shortened just after this check ends the program (SIGBUS).
+  void require_whole() const;
+  /// Reports that so many bytes were read. After each `window` bytes, releases all pages from memory; they
+  /// are read again when they are accessed. Several threads may call this function while others read.
+  void has_read(std::size_t bytes) const;
+
  private:
+  std::string name_;
+  Descriptor file_;
   std::span<const std::byte> bytes_;
+  mutable std::atomic<std::size_t> read_ = 0;
 };
 
 }  // namespace flexura

@@ -60,19 +60,23 @@ bool has_end(std::span<const std::byte> log) {
 /// One pass over a log, which fills a reader.
 class McapScan {
  public:
-  McapScan(std::span<const std::byte> log, const std::string& name, McapCheck check, McapReader& to)
+  // `mapped`: the file of the log; null if the log is in memory.
+  McapScan(std::span<const std::byte> log, const MappedFile* mapped, const std::string& name, McapCheck check,
+           McapReader& to)
       : name_(name),
         cursor_(log, name_),
         check_(check),
         has_end_(has_end(log)),
         content_left_(most_content(log.size())),
+        mapped_(mapped),
         to_(to) {
-    to_.chunks_ = std::make_unique<McapChunks>(log, name_);
+    to_.chunks_ = std::make_unique<McapChunks>(log, name_, mapped);
   }
 
   void run() {
     to_.truncated_ = true;  // Until the end is found.
     if (!take_magic("not an MCAP log")) return;
+    pass();
     for (bool first = true; auto record = next(cursor_); first = false) {
       if (first != (record->op == McapOp::header)) {
         cursor_.fail("a log must begin with its header, and must have only one header", record->start);
@@ -82,10 +86,20 @@ class McapScan {
         return;
       }
       take_top(*record);
+      pass();
     }
   }
 
  private:
+  /// Adds what was read to the data section's CRC, so that the file is read only once.
+  void pass() {
+    const McapCursor here = cursor_;
+    const std::size_t end = here.position();
+    if (check_ != McapCheck::structure && !data_end_) crc_ = mcap_crc(crc_, here.since(passed_));
+    if (mapped_ != nullptr) mapped_->has_read(end - passed_);
+    passed_ = end;
+  }
+
   /// Returns false if the log ends inside the magic bytes.
   bool take_magic(const char* otherwise) {
     const std::size_t length = std::min(cursor_.remaining(), mcap_magic.size());
@@ -266,10 +280,8 @@ class McapScan {
 
   void take_data_end(Record& record) {
     const auto crc = record.content.take<std::uint32_t>();
-    McapCursor whole = cursor_;
     data_end_ = cursor_.position();
-    if (to_.damage_.empty())
-      check_crc(crc, whole.since(0).first(record.start), record.content, "the data section's");
+    if (to_.damage_.empty()) check_crc(crc, crc_, record.content, "the data section's");
   }
 
   void finish(Record& record) {
@@ -290,9 +302,13 @@ class McapScan {
 
   void check_crc(std::uint32_t expected, std::span<const std::byte> bytes, const McapCursor& where,
                  const std::string& whose) const {
+    if (check_ != McapCheck::structure) check_crc(expected, mcap_crc(0, bytes), where, whose);
+  }
+  void check_crc(std::uint32_t expected, std::uint32_t found, const McapCursor& where,
+                 const std::string& whose) const {
     constexpr std::uint32_t not_given = 0;
     if (check_ == McapCheck::structure || expected == not_given) return;
-    if (mcap_crc(0, bytes) != expected) where.fail(whose + " CRC is wrong");
+    if (found != expected) where.fail(whose + " CRC is wrong");
   }
 
   const std::string& name_;
@@ -300,21 +316,24 @@ class McapScan {
   McapCheck check_;
   bool has_end_;
   std::optional<std::size_t> data_end_;  ///< End of the data section's last record.
+  std::size_t passed_ = 0;               ///< Number of bytes in crc_.
+  std::uint32_t crc_ = 0;                ///< Of the data section.
   std::map<std::uint16_t, McapSchema> schemas_;
   std::size_t copied_schemas_ = 0;           ///< Bytes.
   std::size_t content_left_;                 ///< Bytes that further compressed chunks may have.
   std::uint32_t chunk_ = McapChunks::plain;  ///< The compressed chunk that is being read.
+  const MappedFile* mapped_;
   McapReader& to_;
 };
 
 McapReader::McapReader(const std::filesystem::path& path, McapCheck check)
     : file_(std::make_unique<const MappedFile>(path)) {
   const std::string name = path.string();
-  McapScan(file_->bytes(), name, check, *this).run();
+  McapScan(file_->bytes(), file_.get(), name, check, *this).run();
 }
 
 McapReader::McapReader(std::span<const std::byte> bytes, const std::string& name, McapCheck check) {
-  McapScan(bytes, name, check, *this).run();
+  McapScan(bytes, nullptr, name, check, *this).run();
 }
 
 }  // namespace flexura

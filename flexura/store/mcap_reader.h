@@ -19,7 +19,7 @@ namespace flexura {
 struct McapMessage {
   const McapChannel* channel;
   std::uint64_t log_time;  ///< Simulated time, ns.
-  std::uint32_t sequence;  ///< Number of the message, counted by the writer, modulo 2^32.
+  std::uint32_t sequence;  ///< Sequence number of the message, set by the writer, modulo 2^32.
   std::uint32_t chunk;     ///< Number of the compressed chunk with the message's data, or McapChunks::plain.
   const McapChunks* chunks;  ///< Chunks of the reader.
   std::size_t offset;        ///< Start of the data in the chunk or in the file.
@@ -27,8 +27,8 @@ struct McapMessage {
 
   /// Returns the data as written: JSON in the logs of runs. Decompresses the message's chunk, unless this
   /// chunk is among the last few that were used. Reading messages in the file's order is therefore fast.
-  /// Several threads may call this function at once. Throws std::runtime_error if the file has changed since
-  /// it was opened.
+  /// Several threads may call this function at once. Throws std::runtime_error if the file has become
+  /// shorter or a chunk has changed since it was opened.
   [[nodiscard]] std::string text() const { return chunks->text(chunk, offset, size); }
 };
 

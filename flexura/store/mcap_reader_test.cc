@@ -10,8 +10,12 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
 #include <functional>
 #include <random>
+#include <string>
 #include <thread>
 
 #include "flexura/store/mcap_summary.h"
@@ -268,6 +272,45 @@ TEST(McapReader, ReadsALogThatIsStillBeingWritten) {
   EXPECT_THAT(McapReader(folder / "log.mcap").messages(), IsEmpty());
   log.flush();
   EXPECT_THAT(McapReader(folder / "log.mcap").messages(), SizeIs(1));
+}
+
+// Returns the bytes of files that are mapped into this process and in memory.
+double mapped_memory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("RssFile:")) return 1024 * std::stod(line.substr(8));
+  return 0;
+}
+
+TEST(McapReader, KeepsLittleOfALargeFileInMemory) {
+  const TestFolder folder;
+  constexpr std::size_t messages = 1024, length = 65536;
+  {
+    McapWriter log(folder / "log.mcap");
+    const auto channel = log.add_channel({"/image", "x-bytes"});
+    std::mt19937_64 random(1);
+    std::string noise(length, ' ');
+    for (std::size_t i = 0; i < messages; ++i) {
+      for (std::size_t k = 0; k < length; k += 8) {
+        const std::uint64_t bits = random();
+        std::memcpy(noise.data() + k, &bits, sizeof bits);
+      }
+      log.write(channel, i, noise);
+    }
+  }
+  const double before = mapped_memory();
+  if (before == 0) GTEST_SKIP() << "the system does not report mapped memory";
+  double most = 0;
+  const McapReader log(folder / "log.mcap");
+  most = std::max(most, mapped_memory());
+  ASSERT_THAT(log.messages(), SizeIs(messages));
+  for (const McapMessage& message : log.messages()) {
+    ASSERT_EQ(message.text().size(), length);
+    most = std::max(most, mapped_memory());
+  }
+  std::printf("%.1f of %.1f MB in memory\n", (most - before) / 1e6, 1e-6 * messages * length);
+  // A window, and what the system reads around the pages.
+  EXPECT_LT(most - before, 3.0 * MappedFile::window);
 }
 
 }  // namespace

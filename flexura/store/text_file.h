@@ -11,9 +11,9 @@ namespace flexura {
 /// as existing. A later attempt to open such a path reports the reason.
 [[nodiscard]] bool is_missing(const std::filesystem::path& path);
 
-/// Returns the bytes of a file or of a pipe. Throws InputError if it cannot be read or has more than
-/// `max_bytes`, for a folder or a device, and for a named pipe (FIFO) into which nothing is written for
-/// `longest_silence`, s. Waits without limit for the standard input.
+/// Returns the bytes of a file or of a pipe. Throws InputError if the file cannot be read or has more than
+/// `max_bytes`, and for a folder or a device. Also throws InputError for a named pipe (FIFO) into which
+/// nothing is written for `longest_silence`, s. Waits without limit for the standard input.
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes,
                                          double longest_silence = 10);
 

@@ -8,7 +8,7 @@
 // Otherwise the code after that reports the error properly.
 #undef NDEBUG
 #define TOML_ASSERT(expr) static_assert(true)
-// Its test for white space lets the compiler assume that letters between U+00A0 and U+0499 never occur.
+// The white space test of toml++ lets the compiler assume that letters between U+00A0 and U+0499 never occur.
 #include <toml++/impl/preprocessor.h>
 #undef TOML_UNREACHABLE
 #define TOML_UNREACHABLE return false
@@ -209,8 +209,8 @@ bool is_repeated_key(std::string_view description) {
 }
 
 // Returns a clear message in place of toml++'s for common errors. These are a text without closing quote
-// (reported as an invalid line end), a repeated key and an incomplete value. A word in place of a value is
-// another one.
+// (reported as an invalid line end), a repeated key and an incomplete value. Another common error
+// is a word in place of a value.
 std::string plain_words(std::string_view description) {
   if (description.find("control characters other than TAB") != std::string_view::npos)
     return "the text does not end on its line: expected a closing quote, and no control characters before it";

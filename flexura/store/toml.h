@@ -27,10 +27,10 @@ inline constexpr std::size_t max_toml_bytes = std::size_t{16} << 20;
 [[nodiscard]] Node parse_toml_value(std::string_view text, const std::string& source, int line, int column);
 
 /// Reads a TOML file. `include = ["rig.toml", ...]` takes values from the named files, which must be in the
-/// file's folder or below. The file's own values replace included ones: tables are merged key by key, arrays
-/// are replaced. Throws InputError for the errors of parse_toml and for a missing or unreadable file. Also
-/// throws InputError for an include that is outside the folder, circular or nested too deeply. `repeated`: as
-/// in parse_toml(), for all files.
+/// file's folder or below. The file's own values replace included values: tables are merged key by key,
+/// arrays are replaced. Throws InputError for the errors of parse_toml and for a missing or unreadable file.
+/// Also throws InputError for an include that is outside the folder, circular or nested too deeply.
+/// `repeated`: as in parse_toml(), for all files.
 [[nodiscard]] Node read_toml_file(const std::filesystem::path& file,
                                   std::vector<Problem>* repeated = nullptr);
 

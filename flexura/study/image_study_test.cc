@@ -172,6 +172,10 @@ TEST(ImageStudy, ItsTwoColumnsAgreeForEveryParameterOfACameraInGeneralPosition) 
     if (field.name == "distance" || field.name == "mount_z") from = 2, to = 2.4;
     if (field.name == "zoom") from = 1, to = 1.2;
     if (field.name[0] == 'c' || field.name[0] == 'f') from = 400, to = 500;  // In px.
+    if (field.name == "k4") {                                                // This and the next ones.
+      camera.lens.model = LensModel::rational;
+      camera.lens.distortion = {-0.1, 0.02, 1e-3, -1e-3, 0, 0.1, 0.01, 0.001};
+    }
     Node written{Node::Table{}, {}};
     ASSERT_EQ(set_at_path(written, fmt::format("vary.{}", field.name),
                           {Node::Array{number_node(from), number_node(to)}, {}}),

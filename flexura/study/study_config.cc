@@ -1,10 +1,14 @@
 #include "flexura/study/study_config.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <string>
+#include <string_view>
 
 #include "flexura/base/table.h"
 #include "flexura/camera/camera.h"
@@ -64,14 +68,14 @@ const std::vector<Parameter>& parameters() {
        "Vertical focal length, px. The horizontal focal length is constant."},
       {"cx", &V::cx, Unit::none, principal_point_range, "Column of the principal point, px."},
       {"cy", &V::cy, Unit::none, principal_point_range, "Row of the principal point, px."},
-      {"k1", &V::k1, Unit::none, distortion_range,
-       "Coefficient of radial distortion with the second power of the radius."},
-      {"k2", &V::k2, Unit::none, distortion_range,
-       "Coefficient of radial distortion with the fourth power of the radius."},
+      {"k1", &V::k1, Unit::none, distortion_range, "Coefficient k1 of the lens model (docs/cameras.md)."},
+      {"k2", &V::k2, Unit::none, distortion_range, "Coefficient k2 of the lens model."},
       {"p1", &V::p1, Unit::none, distortion_range, "Coefficient of vertical tangential distortion."},
       {"p2", &V::p2, Unit::none, distortion_range, "Coefficient of horizontal tangential distortion."},
-      {"k3", &V::k3, Unit::none, distortion_range,
-       "Coefficient of radial distortion with the sixth power of the radius."},
+      {"k3", &V::k3, Unit::none, distortion_range, "Coefficient k3 of the lens model."},
+      {"k4", &V::k4, Unit::none, distortion_range, "Coefficient k4 of the lens model."},
+      {"k5", &V::k5, Unit::none, distortion_range, "Coefficient k5 of the lens model."},
+      {"k6", &V::k6, Unit::none, distortion_range, "Coefficient k6 of the lens model."},
       {"tilt_axis_x", &V::tilt_axis_x, Unit::metre, slide_range,
        "Distance of the tilt axis to the right of the pan axis."},
       {"tilt_axis_y", &V::tilt_axis_y, Unit::metre, slide_range,
@@ -197,6 +201,15 @@ void check_study(const StudyTask& task, const std::vector<CameraConfig>& cameras
   if (config == nullptr) {
     reader.problem_at(path + ".camera", fmt::format("there is no camera \"{}\": expected one of {}",
                                                     task.camera, camera_names(cameras)));
+    return;
+  }
+  constexpr std::array<std::string_view, 8> coefficients = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+  const std::vector<std::string>& names = coefficient_names(config->lens.model);
+  if (std::ranges::count(coefficients, varied[0].name) > 0 &&
+      std::ranges::count(names, varied[0].name) == 0) {
+    reader.problem_at(fmt::format("{}.vary.{}", path, varied[0].name),
+                      fmt::format("is no coefficient of the lens model {}: expected one of {}",
+                                  name_of(config->lens.model), fmt::join(names, ", ")));
     return;
   }
   const Camera camera(*config);

@@ -24,7 +24,8 @@ struct VaryConfig {
   Values stage_x, stage_y, stage_z;  ///< Stage offset, m.
   /// Intrinsics at the initial zoom, px. `focal_length` sets fx and fy.
   Values focal_length, fx, fy, cx, cy;
-  Values k1, k2, p1, p2, k3;                     ///< Distortion of the lens at the initial zoom.
+  /// Distortion of the lens at the initial zoom. The lens model must have the coefficient.
+  Values k1, k2, p1, p2, k3, k4, k5, k6;
   Values tilt_axis_x, tilt_axis_y, tilt_axis_z;  ///< Coordinates of HeadConfig::tilt_axis, m.
   Values pupil_x, pupil_y, pupil_z;              ///< Coordinates of HeadConfig::pupil, m.
   Values pupil_shift;                            ///< HeadConfig::pupil_shift, m.

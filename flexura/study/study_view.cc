@@ -1,9 +1,13 @@
 #include "flexura/study/study_view.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "flexura/math/so3.h"
 
@@ -18,7 +22,9 @@ constexpr std::array<VariedList, 3> stage_parameters{&V::stage_x, &V::stage_y, &
 constexpr std::array<VariedList, 3> mount_parameters{&V::mount_x, &V::mount_y, &V::mount_z};
 constexpr std::array<VariedList, 3> tilt_axis_parameters{&V::tilt_axis_x, &V::tilt_axis_y, &V::tilt_axis_z};
 constexpr std::array<VariedList, 3> pupil_parameters{&V::pupil_x, &V::pupil_y, &V::pupil_z};
-constexpr std::array<VariedList, 5> distortion_parameters{&V::k1, &V::k2, &V::p1, &V::p2, &V::k3};
+constexpr std::array<VariedList, 8> distortion_parameters{&V::k1, &V::k2, &V::p1, &V::p2,
+                                                          &V::k3, &V::k4, &V::k5, &V::k6};
+constexpr std::array<std::string_view, 8> distortion_names{"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
 
 // Returns the index of a parameter in a list; the list's size if it is missing.
 template <std::size_t n>
@@ -29,8 +35,11 @@ std::size_t place_in(const std::array<VariedList, n>& list, VariedList parameter
 }
 
 Intrinsics with(Intrinsics lens, VariedList parameter, double value) {
-  const std::size_t k = place_in(distortion_parameters, parameter);
-  if (k < distortion_parameters.size()) lens.distortion[k] = value;
+  if (const std::size_t k = place_in(distortion_parameters, parameter); k < distortion_parameters.size()) {
+    const std::vector<std::string>& names = coefficient_names(lens.distortion.model());
+    const auto at = static_cast<std::size_t>(std::ranges::find(names, distortion_names[k]) - names.begin());
+    if (at < names.size()) lens.distortion[at] = value;
+  }
   if (parameter == &V::focal_length) lens.fy *= value / lens.fx;
   if (parameter == &V::focal_length || parameter == &V::fx) lens.fx = value;
   if (parameter == &V::fy) lens.fy = value;

@@ -15,8 +15,8 @@ namespace flexura {
 /// State of a rig or a recording at one time.
 struct RigInstant {
   ArmState arm;  ///< Commanded state of the arm.
-  /// Axis positions of each camera's head and stage: the measured ones, or in a live session without a shown
-  /// run the last commanded ones.
+  /// Axis positions of each camera's head and stage. These are the measured positions; in a live session that
+  /// shows no run, the last commanded positions.
   std::vector<CameraReading> cameras;
 };
 

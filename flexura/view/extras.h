@@ -24,7 +24,7 @@ struct GhostArm {
 /// Layers on a camera's picture.
 struct PictureLayers {
   std::string camera;
-  /// Number of the picture in image messages; missing: any picture.
+  /// Number of the picture to which the layers belong, as in image messages; missing: any picture.
   std::optional<std::int64_t> number;
   std::string reason;  ///< Why nothing was found in the picture, or "".
   Node::Array layers;  ///< Layers, as LAYER of the protocol (docs/viewer-protocol.md).
@@ -57,8 +57,8 @@ struct Extras {
   std::vector<std::pair<std::string, double>> values;
 };
 
-/// Returns a line on a picture, rounded to 0.01 px. `id` and `color` are those of the ghost that shows the
-/// same item in 3D.
+/// Returns a line on a picture, rounded to 0.01 px. `id` and `color` are equal to the `id` and `color` of the
+/// ghost that shows the same item in 3D.
 [[nodiscard]] Node line_layer(const std::string& id, const std::string& color,
                               const std::vector<Eigen::Vector2d>& points, bool is_dashed = false);
 

@@ -24,8 +24,8 @@ class LatestJobs {
     std::size_t kind = 0;
     auto operator<=>(const Key&) const = default;
   };
-  /// Computes the answer on the lane's thread. If the computation throws an exception, the request is refused
-  /// with the exception's text.
+  /// Computes the answer on the thread of its queue (lane). If the computation throws an exception, the
+  /// request is refused with the exception's text.
   using Job = std::function<Node()>;
 
   LatestJobs(Background& background, Lane lane) : background_(background), lane_(lane) {}

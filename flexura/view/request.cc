@@ -140,7 +140,7 @@ const Table<TipRequest>& fields_of(const TipRequest*) {
                  {.meaning = "direction of the tip's z axis", .range = any_place})
           .check([](const TipRequest& tip, Reader& reader) {
             if (tip.direction && *tip.direction == std::array<double, 3>{})
-              reader.problem_at("direction", "is zero: expected a direction");
+              reader.problem_at("direction", "is zero: expected a vector other than zero");
           });
   return table;
 }

@@ -6,17 +6,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "flexura/base/image.h"
 #include "flexura/base/node.h"
+#include "flexura/base/source.h"
 #include "flexura/estimate/picture_observation.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/estimate/shape_hint.h"
+#include "flexura/rig/seeing_config.h"
 #include "flexura/view/answers.h"
 #include "flexura/vision/arm_finder.h"
+#include "flexura/vision/arm_scene.h"
 #include "flexura/vision/axis_points.h"
 #include "flexura/vision/backbone_image.h"
 #include "flexura/vision/conic.h"
@@ -42,12 +47,27 @@ struct FoundArm {
   ArmObservation arm;
 };
 
+// Returns what the experiment says about the arm's surroundings ([[seeing]]). The files of a recording may be
+// missing.
+std::shared_ptr<const ArmScene> scene_of(const ViewedRig& rig, std::size_t camera,
+                                         std::vector<std::string>& notes) {
+  try {
+    return arm_scenes(rig.experiment).at(camera);
+  } catch (const InputError& error) {
+    notes.push_back(fmt::format("[[seeing]] is not used: {}", error.problems().front().what));
+    return nullptr;
+  }
+}
+
 FoundArm find_arm(const ViewedRig& rig, const SeenPicture& seen) {
   FoundArm found{eight_bits(*seen.picture, seen.white), rig.nominal_view(seen.camera, seen.reading), {}};
   ArmFinderConfig config;
   config.base = found.view.project(rig.model.driven().X_WB.position);
+  std::vector<std::string> notes;
+  config.scene = scene_of(rig, seen.camera, notes);
   ArmFinder finder(config);
   found.arm = finder.find(*seen.picture, seen.white);
+  std::ranges::move(notes, std::back_inserter(found.arm.notes));
   if (auto note = hint_of_exposure(gray_picture(found.bytes))) found.arm.notes.push_back(std::move(*note));
   return found;
 }

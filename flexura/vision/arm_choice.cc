@@ -218,25 +218,34 @@ void ArmSearch::add_places() {
   });
 }
 
-// Removes from all figures the parts that are wider than the thinnest chords, by a morphological opening.
-// Returns false if there is nothing to remove.
+// Removes from all figures the parts that are wider than the thinnest chords: the discs of this diameter that
+// fit into the figures. Returns false if there is nothing to remove.
 bool ArmSearch::keep_thin_parts(const Image<std::uint8_t>& gray) {
   constexpr double wider = 1.6, beyond = 3, widest_share = 0.25;
-  const int widest = static_cast<int>(std::lround(wider * thinnest_ + beyond));
+  const double widest = std::round(wider * thinnest_ + beyond);
   if (!std::isfinite(thinnest_) || widest > widest_share * std::min(gray.width(), gray.height()))
     return false;
   Image<std::uint8_t> figures(gray.width(), gray.height());
+  cv::Rect box;
+  for (const Component& one : components_.list)
+    box |= cv::Rect(one.left, one.top, one.right - one.left + 1, one.bottom - one.top + 1);
   for (const Run& run : components_.runs)
     std::ranges::fill(figures.row(run.v).subspan(static_cast<std::size_t>(run.first),
                                                  static_cast<std::size_t>(run.last - run.first)),
                       std::uint8_t{255});
-  cv::Mat all(gray.height(), gray.width(), CV_8U, figures.values().data()), wide;
-  // The opened figures are enlarged by a pixel or two, so that no rim of the wide parts is left.
-  cv::morphologyEx(all, wide, cv::MORPH_OPEN, cv::getStructuringElement(cv::MORPH_ELLIPSE, {widest, widest}),
-                   {-1, -1}, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
-  if (cv::countNonZero(wide) == 0) return false;
-  cv::dilate(wide, wide, cv::getStructuringElement(cv::MORPH_ELLIPSE, {7, 7}));
-  all.setTo(0, wide);
+  // Outside the picture is background.
+  cv::Mat all(gray.height(), gray.width(), CV_8U, figures.values().data()), framed, depths, wide, distances;
+  cv::copyMakeBorder(all(box), framed, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+  cv::distanceTransform(framed, depths, cv::DIST_L2, cv::DIST_MASK_5);
+  const double radius = 0.5 * (widest - 1);  // Between centres of pixels.
+  // The centres of the discs are dark, so that distances to them are known.
+  wide = depths <= radius;
+  if (cv::countNonZero(wide) == static_cast<int>(wide.total())) return false;
+  cv::distanceTransform(wide, distances, cv::DIST_L2, cv::DIST_MASK_5);
+  // The discs are enlarged by some pixels, so that no rim of the wide parts is left.
+  constexpr double rim = 3;
+  wide = distances(cv::Rect(1, 1, box.width, box.height)) <= radius + rim;
+  all(box).setTo(0, wide);
   Threshold threshold;
   constexpr double middle = 127.5;
   threshold.level = middle, threshold.figure = Figure::bright;

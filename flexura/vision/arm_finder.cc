@@ -113,7 +113,9 @@ template <typename Value>
 bool ArmFinder::Work::try_methods(const Image<Value>& picture, const Image<std::uint8_t>& gray,
                                   double scale) {
   if (!run(picture, gray, scale, config.threshold)) return false;
-  if (search.seen.is_found() || config.threshold.method != ThresholdMethod::otsu) return true;
+  if (search.seen.is_found() || config.threshold.method != ThresholdMethod::otsu ||
+      !config.tries_other_methods)
+    return true;
   ArmObservation first = search.seen;
   bool is_plain = !first.threshold.reason.empty();
   std::string reasons;
@@ -210,6 +212,10 @@ const ArmObservation& ArmFinder::Work::find_in_scene(const Image<std::uint8_t>& 
   search.seen.noise *= part.contrast / 255, search.seen.contrast *= part.contrast / 255;
   search.seen.notes.insert(search.seen.notes.end(), part.notes.begin(), part.notes.end());
   return end();
+}
+
+void ArmFinder::set_methods(ThresholdMethod first, bool tries_others) {
+  work_->config.threshold.method = first, work_->config.tries_other_methods = tries_others;
 }
 
 const ArmObservation& ArmFinder::find(const Image<std::uint8_t>& gray) {

@@ -33,6 +33,9 @@ struct ArmFinderConfig {
   /// Least and greatest expected width of the arm, px. Figures of another width are measured only if no other
   /// is left.
   std::optional<std::array<double, 2>> width = {};
+  /// Whether the methods `two_mode` and `by_block` are tried if `otsu` shows no arm. A picture without arm
+  /// then takes three searches.
+  bool tries_other_methods = true;
   /// What separates the arm from its surroundings besides brightness; null: nothing.
   std::shared_ptr<const ArmScene> scene = {};
 };
@@ -109,6 +112,9 @@ class ArmFinder {
   /// After a move, the moved-from finder supports only assignment and destruction.
   ArmFinder(ArmFinder&&) noexcept;
   ArmFinder& operator=(ArmFinder&&) noexcept;
+
+  /// Sets the thresholding method for the next pictures, and whether others are tried if `first` is `otsu`.
+  void set_methods(ThresholdMethod first, bool tries_others);
 
   /// Finds the arm in a gray picture. The result is valid until the next call. Throws std::invalid_argument
   /// for a picture with more than one channel.

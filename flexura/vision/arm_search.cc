@@ -40,28 +40,21 @@ constexpr std::size_t most_seeds = 4;
 // If the axis covers more than this fraction, the rest is due to the ends and noise.
 constexpr double all_but_ends = 0.95;
 
-// Returns whether a point of the border belongs to the axis: its distance from the axis is half the width.
-bool is_explained(const BorderPoint& point, const std::vector<AxisSample>& axis) {
-  constexpr double close = 1.5;  // px, across and along the axis.
-  return std::ranges::any_of(axis, [&](const AxisSample& sample) {
-    const Eigen::Vector2d off = point.pixel - sample.pixel;
-    const double across = std::abs(off.dot(sample.normal));
-    return std::abs(across - 0.5 * sample.width) < close &&
-           off.squaredNorm() < across * across + close * close;
-  });
-}
-
 // Score of an axis: the covered share of the figure and the number of known ends.
 double merit(const ArmObservation& seen) {
   const auto is_known = [](const AxisEnd& end) { return end.kind != AxisEndKind::lost; };
   return std::min(seen.covered, 1.0) + 0.2 * static_cast<double>(std::ranges::count_if(seen.ends, is_known));
 }
 
+bool has_both_ends(const ArmObservation& seen) {
+  const auto is_lost = [](const AxisEnd& end) { return end.kind == AxisEndKind::lost; };
+  return seen.is_found() && (seen.is_closed || std::ranges::none_of(seen.ends, is_lost));
+}
+
 // Returns whether no other seed can give a better result.
 bool shows_all(const ArmObservation& seen) {
   constexpr double whole = 0.85;
-  const auto is_lost = [](const AxisEnd& end) { return end.kind == AxisEndKind::lost; };
-  return seen.covered > whole && (seen.is_closed || std::ranges::none_of(seen.ends, is_lost));
+  return seen.covered > whole && has_both_ends(seen);
 }
 
 }  // namespace
@@ -217,13 +210,20 @@ std::string ArmSearch::reason_against_following(double width) const {
   return "it is not a tube, or points at the camera";
 }
 
-// Tries the first few seeds. Stores the result of the best seed in `best_`.
+// Tries the first few seeds. Stores the result of the best seed in `best_`. If two seeds agree on a tube and
+// its ends, other seeds on this tube are omitted.
 template <typename Value>
 void ArmSearch::try_seeds(const Image<Value>& picture, double scale, const Component& component) {
+  constexpr double equal = 0.02;
+  bool is_confirmed = false;
   for (std::size_t i = 0; i < std::min(seeds_.size(), most_seeds); ++i) {
+    if (is_confirmed && cover_.has_chord(seeds_[i].center, seeds_[i].normal)) continue;
     if (!follow_from(picture, scale, component, seeds_[i])) continue;
-    if (best_.axis.empty() || merit(seen) > merit(best_)) best_ = seen;
-    if (shows_all(seen)) break;
+    const double gain = merit(seen) - (best_.is_found() ? merit(best_) : 0);
+    is_confirmed = best_.is_found() && has_both_ends(seen) && std::abs(gain) < equal;
+    if (!best_.is_found() || gain > 0) best_ = seen;
+    if (shows_all(best_)) break;
+    if (is_confirmed) cover_.set(best_.axis);
   }
 }
 
@@ -273,10 +273,14 @@ void ArmSearch::add_unexplained(const Image<std::uint8_t>& gray) {
            (u < 0 || v < 0 || u >= inside->width() || v >= inside->height() || inside->at(u, v) == 0);
   };
   constexpr double usual_blur = 0.8;  // px
+  cover_.set(seen.axis);
+  // The border of the figure is measured only where its pixels are not on the borders of the tube.
+  constexpr double on_border = 1, close = AxisCover::along;  // px
   find_border(gray, seen.threshold, components_, component, seen.blur > 0 ? seen.blur : usual_blur,
-              seen.unexplained);
+              seen.unexplained,
+              [&](const Eigen::Vector2d& pixel) { return cover_.is_border(pixel, on_border); });
   std::erase_if(seen.unexplained, [&](const BorderPoint& point) {
-    return is_outside(point) || is_explained(point, seen.axis);
+    return is_outside(point) || cover_.is_border(point.pixel, close);
   });
 }
 

@@ -8,6 +8,7 @@
 
 #include "flexura/base/image.h"
 #include "flexura/vision/arm_finder.h"
+#include "flexura/vision/axis_cover.h"
 #include "flexura/vision/axis_curve.h"
 #include "flexura/vision/picture_frame.h"
 #include "flexura/vision/runs.h"
@@ -83,6 +84,7 @@ class ArmSearch {
   std::vector<CrossSection> ahead_, sections_;
   BlurredSteps steps_;
   AxisCurve curve_;
+  AxisCover cover_;                   // Of the axis that was found.
   double least_blur_ = 0;             // Of the places from which a component was followed, px.
   double thinnest_ = 0;               // Width of the thinnest chords of the figures that are no tubes, px.
   std::vector<Eigen::Vector2d> cut_;  // The axis beyond the base.

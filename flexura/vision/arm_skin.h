@@ -41,7 +41,8 @@ struct ArmSkin {
   ArmSkin(const Image<std::uint8_t>& picture, const ArmObservation& arm);
 
   [[nodiscard]] std::size_t size() const { return axis.size(); }
-  /// Returns the point of the centerline at the sample position `along`, which need not be an integer, px.
+  /// Returns a point of the centerline, px. `along`: index of a sample; values between integers are
+  /// interpolated.
   [[nodiscard]] Eigen::Vector2d at(double along) const;
 };
 

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -20,12 +19,19 @@ using Eigen::Vector2d;
 
 // Gradient of the picture at a pixel, over 5 x 5 pixels.
 Vector2d gradient(const Image<std::uint8_t>& gray, int u, int v) {
+  // By the squared distance, px^2.
+  static const std::array<double, 9> weights = [] {
+    std::array<double, 9> result{};
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = std::exp(-0.4 * static_cast<double>(i));
+    return result;
+  }();
   Vector2d sum = Vector2d::Zero();
   for (int j = -2; j <= 2; ++j) {
     for (int i = -2; i <= 2; ++i) {
       const double value =
           gray.at(std::clamp(u + i, 0, gray.width() - 1), std::clamp(v + j, 0, gray.height() - 1));
-      sum += value * Vector2d(i, j) * std::exp(-0.4 * (i * i + j * j));
+      const int squared = i * i + j * j;
+      sum += value * Vector2d(i, j) * weights[static_cast<std::size_t>(squared)];
     }
   }
   return sum;
@@ -89,16 +95,23 @@ double best_blur(const BlurSeries& series, std::size_t count, const FindBorder& 
 }  // namespace
 
 void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, const Components& components,
-                 std::uint32_t component, double blur, std::vector<BorderPoint>& border) {
+                 std::uint32_t component, double blur, std::vector<BorderPoint>& border,
+                 const std::function<bool(const Vector2d&)>& is_known) {
   border.clear();
   BlurredSteps steps;
   const int sign = threshold.figure == Figure::dark ? 1 : -1;
   const EdgeFinder<std::uint8_t> edges(gray, sign, steps, lone_border_blur);
   const double contrast = threshold.bright - threshold.dark;
   // A pixel is passed twice where the component is a pixel wide.
-  std::set<std::pair<int, int>> passed;
+  const Component& box = components.list[component];
+  const int columns = box.right - box.left + 1;
+  std::vector<bool> passed(static_cast<std::size_t>(columns) *
+                           static_cast<std::size_t>(box.bottom - box.top + 1));
   for (const auto& [u, v] : trace(components, component)) {
-    if (!passed.emplace(u, v).second) continue;
+    const auto at = static_cast<std::size_t>(v - box.top) * static_cast<std::size_t>(columns) +
+                    static_cast<std::size_t>(u - box.left);
+    if (passed[at] || (is_known && is_known(Vector2d(u, v)))) continue;
+    passed[at] = true;
     const Vector2d slope = sign * gradient(gray, u, v);
     if (!(slope.norm() > 0)) continue;
     const Vector2d normal = slope.normalized();

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,11 @@ struct BorderPoint {
 
 /// Finds the outer border of a component with subpixel accuracy. The points are in order around the
 /// component. At each pixel that touches the outer background, it searches the border along the picture's
-/// gradient. Borders of holes, and parts that the picture's border cuts, are omitted. `blur` is the standard
-/// deviation of the border's blur, px.
+/// gradient. Borders of holes, parts that the picture's border cuts, and pixels for which `is_known` returns
+/// true are omitted. `blur` is the standard deviation of the border's blur, px.
 void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, const Components& components,
-                 std::uint32_t component, double blur, std::vector<BorderPoint>& border);
+                 std::uint32_t component, double blur, std::vector<BorderPoint>& border,
+                 const std::function<bool(const Eigen::Vector2d&)>& is_known = {});
 
 /// The largest figure of a picture, with at least 24 pixels, and its border. Figures that touch the picture's
 /// border are considered only if all figures touch the border.

@@ -296,8 +296,8 @@ MarkerObservations find_markers(const Image<std::uint8_t>& picture, const ArmObs
     constexpr double stands_out = 2.5;
     bound = std::max(bound, stands_out * texture->contrast);
     found.notes.push_back(
-        fmt::format("the arm's surface has a texture ({} stretches, one every {:.1f} px): only what "
-                    "differs 2.5 times as much is a marker",
+        fmt::format("the arm's surface has a texture ({} periods of {:.1f} px): only spots that differ "
+                    "2.5 times as much as the texture count as markers",
                     texture->count, texture->period));
     if (texture_of(skin, thickness, bound)) return found;
   }

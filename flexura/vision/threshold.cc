@@ -188,6 +188,7 @@ Threshold threshold_of(const Histogram& histogram, const ThresholdConfig& config
   found.level = config.level;
   switch (config.method) {
     case ThresholdMethod::fixed:
+      if (!std::isfinite(config.level)) throw std::invalid_argument("the threshold must be a finite number");
       break;
     case ThresholdMethod::two_mode:
       found.level = valley_split(histogram) + 0.5;

@@ -41,8 +41,8 @@ struct ThresholdConfig {
 /// Number of pixels of each brightness. For pictures with more than 8 bits, brightness is the upper 8 bits.
 using Histogram = std::array<std::uint32_t, 256>;
 
-/// Computes the histogram of all pixels or, if there are more than `samples`, of an evenly distributed
-/// selection.
+/// Computes the histogram of a picture. If the picture has more than `samples` pixels, only pixels at equal
+/// distances are counted.
 [[nodiscard]] Histogram histogram_of(const Image<std::uint8_t>& gray, std::size_t samples = 1U << 30U);
 
 /// A threshold, with statistics of the two classes. Brightness is on a scale from 0 to 255.
@@ -57,12 +57,12 @@ struct Threshold {
   std::string reason;
 };
 
-/// Returns the threshold of a histogram by one of the methods otsu, two_mode and fixed. The threshold has a
-/// reason if it separates no foreground.
+/// Computes the threshold of a histogram by one of the methods otsu, two_mode and fixed. If no foreground can
+/// be separated, Threshold::reason says why.
 [[nodiscard]] Threshold threshold_of(const Histogram& histogram, const ThresholdConfig& config = {});
 
-/// Returns the threshold of a picture, with the class of the foreground. `samples` limits the number of
-/// pixels in the histogram.
+/// Computes the threshold of a picture, and which of the two classes is the foreground. `samples` limits the
+/// number of pixels in the histogram.
 [[nodiscard]] Threshold threshold_of(const Image<std::uint8_t>& gray, const ThresholdConfig& config,
                                      std::size_t samples = 1U << 30U);
 

@@ -22,8 +22,8 @@ struct TubeSeed {
 [[nodiscard]] TubeSeed shortest_chord(const Components& components, const Eigen::Vector2d& from, double limit,
                                       int directions = 16);
 
-/// Finds chords through points distributed over a component, those of medium width first. Where tubes cross
-/// or end, or where a hair covers the tube, chords have unusual lengths.
+/// Finds the shortest chords through points that are distributed over a component. Chords of medium length
+/// come first. Where tubes cross or end, or where a hair covers the tube, chords have unusual lengths.
 void tube_seeds(const Components& components, const Component& component, std::vector<TubeSeed>& seeds);
 
 }  // namespace flexura

@@ -45,8 +45,8 @@ class TubeTracker {
   /// contrast of a border.
   TubeTracker(const Image<Value>& picture, Figure figure, double level, double contrast, BlurredSteps& steps);
 
-  /// Ends the tracking at pixels at which `inside` is 0, as at the picture's border. Null: nowhere. The image
-  /// must have the picture's size and outlive the tracker.
+  /// The tracking ends where `inside` is 0, as it does at the picture's border. Null: it ends only at the
+  /// border. The image must have the picture's size and outlive the tracker.
   void stay_inside(const Image<std::uint8_t>* inside) { inside_ = inside; }
 
   /// Returns the cross-section near the pixel `center`. `normal`: approximate direction across the tube.

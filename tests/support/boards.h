@@ -59,8 +59,38 @@ inline std::vector<BoardView> seen_boards(const BoardBundle& truth,
   return views;
 }
 
+/// Returns whether a marker with its upper left corner at (0, 0) is dark at a point, given in sides of the
+/// marker.
+inline bool is_dark_marker(FiducialFamily family, int id, const Eigen::Vector2d& at) {
+  const int cells = side_of(family) + 2;
+  const int column = static_cast<int>(std::floor(at.x() * cells)),
+            row = static_cast<int>(std::floor(at.y() * cells));
+  return row >= 0 && column >= 0 && row < cells && column < cells && is_black_cell(family, id, row, column);
+}
+
+/// The same for a board with markers. `layout`: index in fiducial_layouts().
+inline bool is_dark_with_markers(const BoardTarget& board, const Eigen::Vector2d& at, int layout) {
+  const double side = board.marker / board.square;
+  const int column = static_cast<int>(std::floor(at.x())), row = static_cast<int>(std::floor(at.y()));
+  const Eigen::Vector2d inside = at - Eigen::Vector2d(column, row);
+  if (board.pattern == BoardPattern::apriltags) {
+    if (column < 0 || row < 0 || column >= board.columns || row >= board.rows) return false;
+    const int counted = layout == 0 ? row : board.rows - 1 - row;
+    return is_dark_marker(board.family, counted * board.columns + column, inside / side);
+  }
+  if (column < -1 || row < -1 || column >= board.columns || row >= board.rows) return false;
+  if ((column + row) % 2 == 0 ? layout == 0 : layout == 1) return true;
+  // Squares with markers in the rows above, and before this one.
+  int id = 0;
+  for (int r = -1; r <= row; ++r)
+    for (int c = -1; c < (r < row ? board.columns : column); ++c)
+      id += (r + c) % 2 == 0 ? layout : 1 - layout;
+  return is_dark_marker(board.family, id, (inside - 0.5 * (1 - side) * Eigen::Vector2d::Ones()) / side);
+}
+
 /// Returns whether the board is dark at a point of its plane, given in units of `square`.
-inline bool is_dark(const BoardTarget& board, const Eigen::Vector2d& at) {
+inline bool is_dark(const BoardTarget& board, const Eigen::Vector2d& at, int layout = 0) {
+  if (board.has_markers()) return is_dark_with_markers(board, at, layout);
   if (board.pattern == BoardPattern::chessboard) {
     const bool is_on = at.x() > -1 && at.y() > -1 && at.x() < board.columns && at.y() < board.rows;
     const auto cell = static_cast<int>(std::floor(at.x()) + std::floor(at.y()));
@@ -76,7 +106,7 @@ inline bool is_dark(const BoardTarget& board, const Eigen::Vector2d& at) {
 
 /// Renders the board on a bright background, with sixteen samples per pixel.
 inline Image<std::uint8_t> board_picture(const BoardTarget& board, const Lens& lens, const Pose& X_CB,
-                                         int width, int height) {
+                                         int width, int height, int layout = 0) {
   Image<std::uint8_t> picture(width, height);
   const Pose X_BC = X_CB.inverse();
   constexpr int side = 4;
@@ -84,13 +114,15 @@ inline Image<std::uint8_t> board_picture(const BoardTarget& board, const Lens& l
     for (int u = 0; u < width; ++u) {
       int dark = 0;
       for (int sample = 0; sample < side * side; ++sample) {
-        const Eigen::Vector2d pixel(u + (sample % side + 0.5) / side - 0.5,
-                                    v + (sample / side + 0.5) / side - 0.5);
+        // No two samples share a row or a column, so that edges along rows and columns are exact, too.
+        const double across = sample % side, down = sample / side;
+        const Eigen::Vector2d pixel(u + (across + (down + 0.5) / side) / side - 0.5,
+                                    v + (down + (across + 0.5) / side) / side - 0.5);
         const auto direction = lens.unproject(pixel);
         if (!direction) continue;
         const Eigen::Vector3d ray = X_BC.rotation * direction->homogeneous();
         const Eigen::Vector3d at = X_BC.position - X_BC.position.z() / ray.z() * ray;
-        dark += is_dark(board, at.head<2>() / board.square) ? 1 : 0;
+        dark += is_dark(board, at.head<2>() / board.square, layout) ? 1 : 0;
       }
       picture.at(u, v) = static_cast<std::uint8_t>(225 - 195 * dark / (side * side));
     }

@@ -212,7 +212,8 @@ class Own {
         prior.rotation,  prior.pan_zero, prior.tilt_zero,       prior.tilt_axis,      prior.tilt_axis,
         prior.tilt_axis, prior.pupil,    prior.pupil,           prior.pupil,          prior.pupil_shift,
         prior.focal,     prior.aspect,   prior.principal_point, prior.principal_point};
-    std::ranges::copy(prior.distortion, sigmas.begin() + 19);
+    constexpr std::ptrdiff_t coefficients = 5;  // Of the lens model brown.
+    std::copy_n(prior.distortion.begin(), coefficients, sigmas.begin() + 19);
     return sigmas;
   }
 

@@ -261,7 +261,7 @@ class RigUnderTest {
 
   void check() const {
     EXPECT_GT(accepted_, run_time_ * 2);
-    EXPECT_GT(hangs_, run_time_ / 60);
+    EXPECT_GT(hangs_, run_time_ / 120);
     EXPECT_GT(stops_, run_time_ / 20);
     EXPECT_GT(rest_.checks(), 1000);
     for (const int readings : head_readings_) EXPECT_GT(readings, run_time_);

@@ -186,7 +186,8 @@ std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run, const CameraO
 CalibrationRun run_calibration(const CalibrateTask& task, const std::string& name, const Setup& setup,
                                const ArmState& from, TaskStage& stage) {
   const std::vector<CameraConfig> cameras = setup.cameras();
-  const RigSessionConfig session = session_config(task, setup.arm, cameras, setup.stand);
+  RigSessionConfig session = session_config(task, setup.arm, cameras, setup.stand);
+  session.picture.scenes = arm_scenes(setup);
   CalibrationRun run;
   run.name = name;
   run.is_before_etalon = is_before_etalon(task);
@@ -197,6 +198,7 @@ CalibrationRun run_calibration(const CalibrateTask& task, const std::string& nam
   LoggedSession log(run, most_images(task), stage, recorded.motion());
   if (is_loop(task)) {
     LoopConfig loop = loop_config(task, setup.arm, cameras, setup.stand);
+    loop.picture.scenes = session.picture.scenes;
     loop.draw = ideal_pictures(setup);
     run.accepted = loop.accepted;
     run.loop = calibrate_by_loop(recorded.ports(), run.nominal, loop, log);

@@ -19,7 +19,8 @@ struct LoopOffset {
   [[nodiscard]] bool is_reached() const { return std::abs(last->offset) <= last->accepted; }
 };
 
-/// Returns the offsets of a calibration by one of the paper's methods, in the order of their first decisions.
+/// Returns the offsets of a calibration by one of the paper's methods, in the order in which the method first
+/// decided on them.
 [[nodiscard]] std::vector<LoopOffset> loop_offsets(const CalibrationRun& run);
 
 /// Returns the table of a successful calibration: one row per quantity. A row has the value at the start, the

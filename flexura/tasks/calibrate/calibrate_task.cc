@@ -59,7 +59,7 @@ class CalibrateRunner : public TaskRunner {
   }
 
   void finish(const std::filesystem::path& results, bool /*is_cancelled*/, Progress& /*progress*/) override {
-    if (run_ && run_->is_done()) write_rig_file(setup(), *run_, task_.save, results);
+    if (run_ && run_->is_done() && !results.empty()) write_rig_file(setup(), *run_, task_.save, results);
   }
   [[nodiscard]] TaskOutcome outcome(const Motion& /*motion*/) const override {
     return run_ ? calibration_outcome(*run_) : not_begun(name(), "calibrate", "calibration", "reached");

@@ -124,8 +124,8 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
   constexpr double shows = 1e-3;  // In rad.
   if (off > shows)
     points.push_back(
-        fmt::format("The basis approximates the initial angles of the arm with an error of {:.3g} deg and "
-                    "the requested target with an error of {:.3g} deg, root mean square along the arm.",
+        fmt::format("The basis approximates the initial angles of the arm with an error of {:.3g} deg. The "
+                    "error for the requested target is {:.3g} deg. Both are root mean squares along the arm.",
                     run.plant.start_off() / degree, run.plant.target_off() / degree));
   points.push_back(
       fmt::format("The arm is drawn as arcs that have its true directions at the sections' ends. The drawn "

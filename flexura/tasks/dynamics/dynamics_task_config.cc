@@ -154,7 +154,8 @@ const Table<DynamicsTask>& fields_of(const DynamicsTask*) {
           .field("bending_stiffness", &T::bending_stiffness,
                  {.meaning = "Bending stiffness EI, N m^2.", .range = amount})
           .field("axial_stiffness", &T::axial_stiffness,
-                 {.meaning = "Axial stiffness EA of variable lengths, N.", .range = amount})
+                 {.meaning = "Axial stiffness EA of the sections, N; with variable_lengths only.",
+                  .range = amount})
           .field("damping", &T::damping,
                  {.meaning = "Damping by the surrounding medium: power loss per metre of arm at a rotation "
                              "rate of 1 rad/s, W/m.",

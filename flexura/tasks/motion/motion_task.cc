@@ -15,6 +15,7 @@
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/arrays.h"
+#include "flexura/math/so3.h"
 #include "flexura/model/arm_model.h"
 #include "flexura/tasks/motion/keyframes.h"
 #include "flexura/tasks/motion/motion_task_config.h"
@@ -57,19 +58,67 @@ MotionPtr motion_of(const HoldTask& task, const ArmModel&, const ArmState& from)
   return hold_motion(from, task.duration);
 }
 
-// Returns the tip's target, m, if the task has one.
-std::optional<Eigen::Vector3d> tip_target(const MoveTask& task) {
-  if (!task.to.position) return std::nullopt;
-  return vector(*task.to.position);
+// Returns the target pose of the tip, if the task has one.
+std::optional<TipTarget> tip_target(const MoveTask& task, const ArmModel& arm) {
+  const MoveTarget& to = task.to;
+  if (to.tip_of) {
+    const Pose X_WT = arm.backbone(arm_state(arm.driven(), *to.tip_of)).tip();
+    TipTarget target{.position = X_WT.position};
+    if (to.match == TipMatch::direction) target.direction = X_WT.rotation.col(2);
+    if (to.match == TipMatch::pose) target.rotation = X_WT.rotation;
+    return target;
+  }
+  if (!to.position) return std::nullopt;
+  TipTarget target{.position = vector(*to.position)};
+  if (to.direction) target.direction = vector(*to.direction);
+  if (to.rotation) target.rotation = rotation_of(*to.rotation);
+  return target;
 }
 
-// Returns the target shape of a move. The search starts at the arm's state.
-ArmState state_to_reach(const MoveTask& task, const ArmModel& arm, const ArmState& from) {
-  const auto tip = tip_target(task);
-  if (!tip) return arm_state(arm.driven(), task.to);
+// Distances of the tip from its target.
+struct TipMiss {
+  double position = 0;  // m
+  double angle = 0;     // rad
+
+  // Returns the distance, m; an angle counts as its arc at the arm's length.
+  [[nodiscard]] double distance(double length) const { return std::max(position, angle * length); }
+};
+
+TipMiss miss_of(const TipTarget& target, const Pose& X_WT) {
+  TipMiss miss{(X_WT.position - target.position).norm(), 0};
+  const Eigen::Vector3d z = X_WT.rotation.col(2);
+  if (target.direction) miss.angle = std::atan2(z.cross(*target.direction).norm(), z.dot(*target.direction));
+  if (target.rotation) miss.angle = so3_log(X_WT.rotation.transpose() * *target.rotation).norm();
+  return miss;
+}
+
+// Returns the search for a shape, which starts at the arm's state.
+InverseResult search_of(const TipTarget& target, const ArmModel& arm, const ArmState& from) {
   InverseConfig config;
   config.start = from;
-  return solve_inverse(arm, TipTarget{.position = *tip}, config).state;
+  return solve_inverse(arm, target, config);
+}
+
+// Returns the entry of a summary about a search. The distances are those of the shape found, from the forward
+// kinematics.
+Node search_node(const std::string& name, const TipTarget& target, const ArmModel& arm,
+                 const InverseResult& found) {
+  const TipMiss miss = miss_of(target, arm.backbone(found.state).tip());
+  return {Node::Table{{"name", {}, text_node(name)},
+                      {"outcome", {}, text_node(std::string(name_of(found.outcome)))},
+                      {"converged", {}, {found.converged(), {}}},
+                      {"unreachable", {}, {found.is_proven, {}}},
+                      {"position_error", {}, number_node(miss.position)},
+                      {"angle_error", {}, number_node(miss.angle)},
+                      {"iterations", {}, {static_cast<std::int64_t>(found.iterations), {}}},
+                      {"starts", {}, {static_cast<std::int64_t>(found.starts), {}}}},
+          {}};
+}
+
+// Returns the target shape of a move.
+ArmState state_to_reach(const MoveTask& task, const ArmModel& arm, const ArmState& from) {
+  const auto target = tip_target(task, arm);
+  return target ? search_of(*target, arm, from).state : arm_state(arm.driven(), task.to);
 }
 
 // Returns the profile of a law that uses the task's duration. Has no default, so that the compiler reports a
@@ -193,7 +242,7 @@ double duration_of(const KeyframesTask& task) {
 
 // Returns the result of a motion of this duration, in words.
 std::string text_of(const MoveTask& task, double distance_to_target, double duration) {
-  return task.to.position
+  return task.to.is_of_tip()
              ? fmt::format("tip {} from its target after {:.4g} s", length_text(distance_to_target), duration)
              : fmt::format("at the target shape after {:.4g} s", duration);
 }
@@ -223,6 +272,7 @@ class MotionRunner : public TaskRunner {
 
   [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& /*done*/) const override {
     const ArmModel arm = setup().arm_model();
+    from_ = from;
     TaskPlan plan{.motion = motion_of(task_, arm, from)};
     if constexpr (std::is_same_v<Task, MoveTask>) add_missed(arm, plan);
     return plan;
@@ -242,13 +292,25 @@ class MotionRunner : public TaskRunner {
       const ArmModel arm = setup().arm_model();
       missed = missed_by(arm, motion);
       outcome.is_reached = missed <= tolerance * arm.driven().length();
-      if (task_.to.position) {
+      if (task_.to.is_of_tip()) {
         outcome.size = missed;
         outcome.size_text = fmt::format("tip {} from its target", length_text(missed));
       }
     }
     outcome.text = text_of(task_, missed, motion.duration());
     return outcome;
+  }
+
+  [[nodiscard]] std::string_view summary_list() const override {
+    return std::is_same_v<Task, MoveTask> ? "moves" : "";
+  }
+  [[nodiscard]] std::optional<Node> summary() const override {
+    if constexpr (std::is_same_v<Task, MoveTask>) {
+      const ArmModel arm = setup().arm_model();
+      const auto target = tip_target(task_, arm);
+      if (target && from_) return search_node(name(), *target, arm, search_of(*target, arm, *from_));
+    }
+    return std::nullopt;
   }
 
   [[nodiscard]] std::vector<ReportSpace::Target> targets(const Motion& motion) const override {
@@ -258,7 +320,7 @@ class MotionRunner : public TaskRunner {
                .start = 0,
                .end = end,
                .shape = setup().arm_model().backbone(motion.at(end)),
-               .position = tip_target(task_)}};
+               .position = tip_position(setup().arm_model())}};
     }
     return {};
   }
@@ -267,18 +329,26 @@ class MotionRunner : public TaskRunner {
   // Share of the arm's length: a tip this near to its target has reached it.
   static constexpr double tolerance = 1e-6;
 
+  // Returns the target position of the tip, m.
+  [[nodiscard]] std::optional<Eigen::Vector3d> tip_position(const ArmModel& arm) const {
+    const auto target = tip_target(task_, arm);
+    return target ? std::optional(target->position) : std::nullopt;
+  }
+
   // Returns the distance of the tip from its target at the end, m; 0 without a target.
   [[nodiscard]] double missed_by(const ArmModel& arm, const Motion& motion) const {
-    const auto target = tip_target(task_);
-    return target ? (arm.backbone(motion.at(motion.duration())).tip().position - *target).norm() : 0;
+    const auto target = tip_target(task_, arm);
+    if (!target) return 0;
+    return miss_of(*target, arm.backbone(motion.at(motion.duration())).tip()).distance(arm.driven().length());
   }
 
   void add_missed(const ArmModel& arm, TaskPlan& plan) const {
     const double missed = missed_by(arm, *plan.motion);
     if (missed > tolerance * arm.driven().length())
-      plan.missed.push_back({.place = "", .distance = missed, .limit = 0, .position = tip_target(task_)});
+      plan.missed.push_back({.place = "", .distance = missed, .limit = 0, .position = tip_position(arm)});
   }
 
+  mutable std::optional<ArmState> from_;  // Of the last plan, for the summary of its search.
   const Task& task_;
 };
 

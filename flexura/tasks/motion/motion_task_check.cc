@@ -24,8 +24,20 @@ void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const s
   check_shape(task.to, kind, sections, path + ".to", reader);
   const MoveTarget& to = task.to;
   const bool has_shape = to.cord_angles || to.archings || to.bends || to.stretches;
-  if (!to.position && !has_shape)
-    reader.problem_at(path + ".to", "is empty: expected a shape, as archings or bends, or position");
+  if (!to.is_of_tip() && !has_shape)
+    reader.problem_at(path + ".to",
+                      "is empty: expected a shape, as archings or bends, or position, or tip_of");
+  if (to.tip_of) {
+    check_shape(*to.tip_of, kind, sections, path + ".to.tip_of", reader);
+    if (to.position || has_shape)
+      reader.problem_at(path + ".to.tip_of",
+                        "is given together with another target: expected only one of them");
+  }
+  if ((to.direction || to.rotation) && !to.position)
+    reader.problem_at(path + (to.direction ? ".to.direction" : ".to.rotation"),
+                      "is given without position: expected both");
+  if (to.direction && to.rotation)
+    reader.problem_at(path + ".to.direction", "is given together with rotation: expected one of them");
   if (to.position && has_shape)
     reader.problem_at(path + ".to.position",
                       "is given together with a shape: expected either a position or a shape");
@@ -163,6 +175,7 @@ void check_keys(const MoveTask& task, const Setup& setup, const std::string& pat
   check_one(task, setup.arm.kind, setup.arm.section.size(), path, reader);
   if (reader.problems().size() > before) return;  // From here on, the shape fits the arm.
   check_bends(setup.arm.arm(), task.to, path + ".to", reader);
+  if (task.to.tip_of) check_bends(setup.arm.arm(), *task.to.tip_of, path + ".to.tip_of", reader);
 }
 
 void check_keys(const HoldTask&, const Setup&, const std::string&, Reader&) {}

@@ -1,6 +1,7 @@
 #include "flexura/tasks/motion/motion_task_config.h"
 
 #include "flexura/base/table.h"
+#include "flexura/math/arrays.h"
 #include "flexura/tasks/shape_fields.h"
 
 namespace flexura {
@@ -31,14 +32,43 @@ const Table<MoveTarget>& fields_of(const MoveTarget*) {
       with_shape_fields(
           Table<MoveTarget>(
               "target",
-              "Target shape of the arm, or target position of its tip. For a tip position, the program "
+              "Target shape of the arm, or target pose of its tip. For a pose of the tip, the program "
               "searches for a shape within the arm's limits, starting at the current shape."))
           .field("position", &MoveTarget::position,
                  {.meaning = "Target position of the tip in the world, instead of a target shape.",
                   .unit = Unit::metre,
                   .range = between(-1e6, 1e6),
-                  .default_text = "not set"});
+                  .default_text = "not set"})
+          .field("direction", &MoveTarget::direction,
+                 {.meaning = "Target direction of the tip in the world, of any length; together with "
+                             "`position`.",
+                  .range = between(-1e6, 1e6),
+                  .default_text = "not set"})
+          .field(
+              "rotation", &MoveTarget::rotation,
+              {.meaning = "Target rotation of the tip: unit quaternion (w, x, y, z) from the tip's axes to "
+                          "the world; together with `position`.",
+               .range = between(-2, 2),
+               .default_text = "not set"})
+          .field("tip_of", &MoveTarget::tip_of,
+                 {.meaning = "Shape whose tip is the target, instead of a target shape. The arm may reach it "
+                             "with another shape.",
+                  .default_text = "not set"})
+          .field("match", &MoveTarget::match,
+                 {.meaning = "What must agree with the tip of `tip_of`: its position, its position and "
+                             "direction, or its full pose."})
+          .check([](const MoveTarget& target, Reader& reader) {
+            const std::string problem = target.rotation ? quaternion_problem(*target.rotation) : "";
+            if (!problem.empty()) reader.problem_at("rotation", problem);
+            if (target.direction && vector(*target.direction).norm() < 1e-9)
+              reader.problem_at("direction", "is 0: expected a direction");
+          });
   return table;
+}
+
+const std::vector<std::string>& names_of(const TipMatch*) {
+  static const std::vector<std::string> names{"position", "direction", "pose"};
+  return names;
 }
 
 const Table<MoveTask>& fields_of(const MoveTask*) {

@@ -17,15 +17,25 @@ namespace flexura {
 /// Time law of a move (kinematics/profile.h).
 enum class MoveLaw { linear, minimum_jerk, trapezoid };
 
-/// Target of a move: a shape, or a tip position for which a shape is computed.
+/// What of the tip's pose is a target.
+enum class TipMatch { position, direction, pose };
+
+/// Target of a move: a shape, or a pose of the tip for which a shape is computed.
 struct MoveTarget : ShapeConfig {
-  std::optional<std::array<double, 3>> position;  ///< Tip position p_WT, m.
+  std::optional<std::array<double, 3>> position;   ///< Tip position p_WT, m.
+  std::optional<std::array<double, 3>> direction;  ///< Direction of the tip's z; requires `position`.
+  std::optional<std::array<double, 4>> rotation;   ///< Quaternion (w, x, y, z) of R_WT; requires `position`.
+  std::optional<ShapeConfig> tip_of;               ///< A shape whose tip has the target pose.
+  TipMatch match = TipMatch::pose;                 ///< What of the pose of `tip_of` is the target.
+
+  /// Returns whether a shape is computed for the tip.
+  [[nodiscard]] bool is_of_tip() const { return position || tip_of; }
 };
 
 /// `kind = "move"`: the arm moves from its current shape to a target shape. The bend and stretch of each
 /// section follow a straight line. If sections have different laws and the shape is given by cord angles,
-/// each cord angle follows its own law. A tip position is converted to a shape by inverse kinematics,
-/// starting at the current shape. If the position is unreachable, the arm moves to the shape whose tip is
+/// each cord angle follows its own law. A pose of the tip is converted to a shape by inverse kinematics,
+/// starting at the current shape. If the pose is unreachable, the arm moves to the shape whose tip is
 /// nearest to it.
 struct MoveTask {
   std::string name;
@@ -78,6 +88,7 @@ struct ExpressionTask {
 };
 
 const std::vector<std::string>& names_of(const MoveLaw*);
+const std::vector<std::string>& names_of(const TipMatch*);
 const std::vector<std::string>& names_of(const Interpolation*);
 const Table<MoveTarget>& fields_of(const MoveTarget*);
 const Table<MoveTask>& fields_of(const MoveTask*);

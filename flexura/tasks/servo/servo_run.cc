@@ -158,6 +158,8 @@ ServoConfig servo_config(const Setup& setup, const ServoTask& task, const RigMod
   }
   const bool is_colored = first.sensor.pixels == PixelKind::color && second.sensor.pixels == PixelKind::color;
   if (is_colored) config.markers = band_places(setup, nominal.arm);
+  const auto scenes = arm_scenes(setup);
+  for (std::size_t i = 0; i < 2; ++i) config.scenes[i] = scenes[config.cameras[i]];
   config.step = task.step.value_or(1 / slower_frame_rate(cameras, config.cameras));
   if (setup.drive) config.drive = setup.drive->drive();
   config.list_step = setup.clock.step;

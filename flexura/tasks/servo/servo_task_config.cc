@@ -117,6 +117,12 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                    "(XOY of the first camera, ZOY of the second). `predictive`: the shape error, with "
                    "commands planned ahead so that a dynamic arm stops oscillating. `computed_torque` and "
                    "`shape_potential`: the shape error, with forces in the modes of the arm's oscillation."})
+          .field(
+              "track", of_task(&T::track),
+              {.meaning = "How the arm is found in the pictures. `finder`: by its brightness and [[seeing]]. "
+                          "`model`: the tube of the predicted shape is fitted to the pictures. This works "
+                          "in front of clutter and with hidden parts, but uses no markers. If it fails, "
+                          "the arm is found as with `finder`."})
           .field("measure", of_task(&T::measure),
                  {.meaning = "Source of the angles for the laws chords and potential. `picture`: each "
                              "picture alone. `flow`: optical flow since the previous picture; these angles "
@@ -154,7 +160,8 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
           .field(
               "tolerance", of_task(&T::tolerance),
               {.meaning = "Largest shape error at which the target counts as reached. The shape error is the "
-                          "root mean square distance along the arm, as a fraction of the arm's length.",
+                          "root mean square distance between the two shapes over the arm's length, as a "
+                          "fraction of this length.",
                .range = above_up_to(0, 1)})
           .field("settle", of_task(&T::settle),
                  {.meaning = "Time for which the error must stay within `tolerance`.",
@@ -176,8 +183,9 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
               "disturbance", of_task(&T::disturbance),
               {.meaning =
                    "If the arm's shape changes by more than this value without a motion of the drives, the "
-                   "servo holds the arm. The change is the root mean square distance along the arm, as a "
-                   "fraction of the arm's length. The task fails if the change lasts for `give_up_after`.",
+                   "servo holds the arm. The change is the root mean square distance between the two "
+                   "shapes over the arm's length, as a fraction of this length. The task fails if the change "
+                   "lasts for `give_up_after`.",
                .range = above_up_to(0, 1),
                .default_text =
                    "0.05 with the arm's model \"dynamic\" and jacobian \"model\", otherwise no such check"})
@@ -222,11 +230,10 @@ void check_planes(const ServoTask& task, const std::vector<CameraConfig>& camera
   } catch (const std::exception&) {
     return;  // An invalid camera is reported elsewhere.
   }
-  reader.problem_at(
-      path + ".law",
-      fmt::format("\"potential\" reads camera {} as the plane XOY and {} as ZOY: expected cameras that "
-                  "look along Z and along X, in this order",
-                  cameras[front].name, cameras[side].name));
+  reader.problem_at(path + ".law", fmt::format("the law potential takes the picture of camera {} as the "
+                                               "plane XOY and that of {} as ZOY: expected cameras that "
+                                               "look along Z and along X, in this order",
+                                               cameras[front].name, cameras[side].name));
 }
 
 // Checks that steps follow the cameras, and that pictures arrive before the servo gives up.

@@ -30,7 +30,7 @@ class StudyRunner : public TaskRunner {
   void finish(const std::filesystem::path& results, bool is_cancelled, Progress& progress) override {
     if (is_cancelled) return;
     study_ = study_images(task_, setup().cameras(), static_cast<std::uint64_t>(setup().seed), &progress);
-    write_study_table(*study_, results);
+    if (!results.empty()) write_study_table(*study_, results);
   }
 
   [[nodiscard]] TaskOutcome outcome(const Motion& /*motion*/) const override {

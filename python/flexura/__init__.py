@@ -1,0 +1,68 @@
+"""Flexura: tentacle and continuum robots, their cameras and their control.
+
+Units are m, rad and s. Arrays are NumPy arrays of float64 unless specified otherwise. Frames are 4 x 4 matrices: X_WT
+is the pose of T in W. docs/python.md has examples.
+"""
+
+from ._flexura import (
+    Arm,
+    Backbone,
+    Camera,
+    Campaign,
+    CampaignResults,
+    CampaignRun,
+    Dynamics,
+    DynamicsBatch,
+    Equilibrium,
+    Experiment,
+    InputError,
+    InverseResult,
+    InverseStaticsResult,
+    Log,
+    Measurement,
+    Photographer,
+    RodState,
+    RodStep,
+    RunResult,
+    ShapeEstimate,
+    Statics,
+    __version__,
+    export,
+    find_board,
+    fit_intrinsics,
+    measure,
+    schema,
+)
+from ._program import ProgramResult, program
+
+__all__ = [
+    "Arm",
+    "Backbone",
+    "Camera",
+    "Campaign",
+    "CampaignResults",
+    "CampaignRun",
+    "Dynamics",
+    "DynamicsBatch",
+    "Equilibrium",
+    "Experiment",
+    "InputError",
+    "InverseResult",
+    "InverseStaticsResult",
+    "Log",
+    "Measurement",
+    "Photographer",
+    "ProgramResult",
+    "RodState",
+    "RodStep",
+    "RunResult",
+    "ShapeEstimate",
+    "Statics",
+    "__version__",
+    "export",
+    "find_board",
+    "fit_intrinsics",
+    "measure",
+    "program",
+    "schema",
+]

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "bench/render_scene.h"
 #include "flexura/estimate/picture_observation.h"
@@ -54,6 +55,7 @@ struct LoopCamera {
   Image<std::uint8_t> picture = Image<std::uint8_t>(loop_width, loop_height);
   ArmFinder finder = ArmFinder();
   Observation seen = {};
+  std::vector<Eigen::Vector2d> expected = {};    // Predicted centerline; empty: none.
   double drawing = 0, reading = 0, finding = 0;  // Totals over all cycles, s.
 };
 
@@ -80,6 +82,7 @@ inline void look(LoopCamera& camera, const Scene& scene, std::uint64_t turn) {
   camera.drawing += watch.lap();
   camera.sensor.read(camera.light.light, {1, camera.number, turn}, camera.rows, camera.picture);
   camera.reading += watch.lap();
+  camera.finder.expect(camera.expected);
   camera.seen = observation_of(camera.finder.find(camera.picture), camera.view);
   camera.finding += watch.lap();
 }

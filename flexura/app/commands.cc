@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
@@ -37,6 +38,7 @@
 #include "flexura/log/export_png.h"
 #include "flexura/log/results.h"
 #include "flexura/log/results_log.h"
+#include "flexura/rig/rig_devices.h"
 #include "flexura/safety/violation_groups.h"
 #include "flexura/store/child_process.h"
 #include "flexura/store/json.h"
@@ -166,7 +168,14 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   } else {
     unwatched.emplace(link);
   }
-  const RunResult result = run_experiment(experiment, folder, *link, link.get());
+  RunResult result;
+  try {
+    result = run_experiment(experiment, folder, *link, link.get());
+  } catch (const HomingCancelled& cancelled) {
+    progress.clear();
+    print_line(err, "cancelled", cancelled.what());
+    return exit_of_signal(unwatched ? unwatched->received_signal() : SIGINT);
+  }
   // The film is optional: the run succeeds without ffmpeg, and a cancelled run does not wait for it.
   std::string no_film;
   if (has_films && result.outcome != RunOutcome::cancelled) {

@@ -71,7 +71,7 @@ double arm_value(const JogAxis& axis, const Drive& drive, const ArmReading& read
 JogResult jog_arm(const Experiment& experiment, const JogAxis& axis, double distance, const ArmJog& jog,
                   const StopSignal& stop) {
   const RigEquipment& equipment = *experiment.equipment;
-  RealDevices devices(equipment.watchdog);
+  RealDevices devices(equipment.watchdog, [&stop] { return stop.come() != 0; });
   const ArmSetup setup(experiment.model_rig());
   const Drive& drive = setup.drive.value();
   ArmEquipment motors(equipment, setup, devices);
@@ -222,7 +222,12 @@ int jog_command(const JogArguments& arguments, std::ostream& out, std::ostream& 
     result = jog_head(experiment, axis, distance, stop, refusals);
   } else {
     const ArmJog jog = plan_arm_jog(experiment, axis, distance, refusals);
-    if (refusals.empty()) result = jog_arm(experiment, axis, distance, jog, stop);
+    try {
+      if (refusals.empty()) result = jog_arm(experiment, axis, distance, jog, stop);
+    } catch (const HomingCancelled& cancelled) {
+      print_line(err, "stopped", cancelled.what());
+      return exit_of_signal(stop.come());
+    }
   }
   for (const std::string& why : refusals) print_line(err, "refused", why);
   if (arguments.json) out << write_json(jog_node(axis, result, refusals), 2) << '\n';

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -40,6 +41,8 @@ class DeviceAccess {
   [[nodiscard]] virtual bool wants_logins() const { return true; }
   /// Returns the guard that stops the devices when this program dies or hangs; null if nothing can move.
   [[nodiscard]] virtual Guard* guard() = 0;
+  /// Returns whether the user has asked the program to stop. Homing then ends.
+  [[nodiscard]] virtual bool is_cancelled() const { return false; }
 };
 
 /// Real devices, at the configured addresses.
@@ -48,7 +51,9 @@ class RealDevices : public DeviceAccess {
   /// Opens devices without a guard. Use this constructor only if nothing will move.
   RealDevices() = default;
   /// Opens devices that a guard protects. `watchdog`: period of the guard, s, > 0. Throws like Guard.
-  explicit RealDevices(double watchdog) : guard_(std::in_place, watchdog) {}
+  /// `is_cancelled`: returns whether the user has asked the program to stop; empty: never.
+  explicit RealDevices(double watchdog, std::function<bool()> is_cancelled = {})
+      : guard_(std::in_place, watchdog), is_cancelled_(std::move(is_cancelled)) {}
 
   [[nodiscard]] WallClock& clock() override { return clock_; }
   [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const GrblConfig& config) override {
@@ -67,9 +72,11 @@ class RealDevices : public DeviceAccess {
     return v4l2_system_calls();
   }
   [[nodiscard]] Guard* guard() override { return guard_ ? &*guard_ : nullptr; }
+  [[nodiscard]] bool is_cancelled() const override { return is_cancelled_ && is_cancelled_(); }
 
  private:
   std::optional<Guard> guard_;
+  std::function<bool()> is_cancelled_;
   WallClock clock_;
 };
 

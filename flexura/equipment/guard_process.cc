@@ -14,6 +14,10 @@
 namespace flexura {
 namespace {
 
+// A silent program may go on; its devices are stopped again until then, but not for ever.
+constexpr int most_repeats = 1000, repeats_of_lost = 4;
+constexpr double between_repeats = 0.2;  // s
+
 double seconds_now() noexcept {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
@@ -73,9 +77,10 @@ class Process : public GuardWatch {
     return is_ready && all[0].revents != 0;
   }
 
+  // A connection in progress is not interrupted by a repetition.
   void send_to_address(std::size_t device, const GuardMessage& stop) noexcept override {
     Connection& one = connection_[device];
-    if (one.socket >= 0) ::close(one.socket);
+    if (one.socket >= 0) return;
     one = {::socket(stop.address.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0),
            seconds_now() + most_connection, false, &stop};
     [[maybe_unused]] const int begun =  // It goes on while this process does other things.
@@ -135,14 +140,26 @@ bool GuardWatch::advance(double now) noexcept {
   const bool is_silent = is_moving_ && now > beat_ + period_;
   if (is_silent) {
     is_moving_ = false;
+    repeats_ = most_repeats;
+    stop(now);
+  } else if (now >= next_repeat()) {
+    --repeats_;
     stop(now);
   }
   send_rest(now);
   return is_silent;
 }
 
+// Returns the time of the next repetition of a stop, s; HUGE_VAL: none. Messages with a delay come before it.
+double GuardWatch::next_repeat() const noexcept {
+  if (repeats_ == 0 || has_rest_) return HUGE_VAL;
+  double longest = 0;
+  for (std::size_t i = 0; i < devices_; ++i) longest = std::max(longest, device_[i].stop.delay);
+  return stopped_ + longest + between_repeats;
+}
+
 double GuardWatch::due() const noexcept {
-  double due = is_moving_ ? beat_ + period_ : HUGE_VAL;
+  double due = std::min(is_moving_ ? beat_ + period_ : HUGE_VAL, next_repeat());
   if (has_rest_)
     for (std::size_t i = 0; i < devices_; ++i)
       if (is_rest_due_[i]) due = std::min(due, stopped_ + device_[i].stop.delay);
@@ -164,22 +181,23 @@ void GuardWatch::heed(const GuardMessage& message, int link, double now) noexcep
       }
       break;
     case Kind::moving:
-      is_moving_ = true, beat_ = now;
+      is_moving_ = true, beat_ = now, repeats_ = 0;
       break;
     case Kind::resting:
-      is_moving_ = false;
+      is_moving_ = false, repeats_ = 0;
       break;
     case Kind::stop:
       stop(now);
       break;
     case Kind::end:
-      is_over_ = true, is_moving_ = false;
+      is_over_ = true, is_moving_ = false, repeats_ = 0;
       break;
   }
 }
 
 void GuardWatch::lose_program(double now) noexcept {
   is_over_ = true, is_moving_ = false;
+  repeats_ = repeats_of_lost;
   stop(now);
 }
 

@@ -54,10 +54,11 @@ class GuardWatch {
   /// Processes a message of the program at time `now`, s. `link`: descriptor of the link that the message
   /// carries, or -1.
   void heed(const GuardMessage& message, int link, double now) noexcept;
-  /// Stops all devices at time `now`, s, because the program has ended without a message.
+  /// Stops all devices at time `now`, s, because the program has ended without a message. A few repetitions
+  /// follow, because a stop may be lost on a disturbed line.
   void lose_program(double now) noexcept;
   /// Sends the messages that are due at time `now`, s. Returns whether this call has stopped the devices,
-  /// because a beat is missing.
+  /// because a beat is missing. While beats are missing, the stop is repeated.
   bool advance(double now) noexcept;
   /// Returns the time at which advance() must be called if no message arrives before, s; HUGE_VAL: never.
   [[nodiscard]] double due() const noexcept;
@@ -77,6 +78,7 @@ class GuardWatch {
     GuardMessage stop;
   };
   void stop(double now) noexcept;
+  [[nodiscard]] double next_repeat() const noexcept;
   void send_rest(double now) noexcept;
   void send_part(std::size_t i, std::size_t from, std::size_t to) noexcept;
 
@@ -85,6 +87,7 @@ class GuardWatch {
   std::array<bool, Guard::most_links> is_rest_due_{};
   std::size_t devices_ = 0;
   bool is_moving_ = false, is_over_ = false, has_rest_ = false;
+  int repeats_ = 0;  // Stops that will be repeated before the next beat.
   double beat_ = 0, stopped_ = 0;
 };
 

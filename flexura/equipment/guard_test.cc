@@ -43,6 +43,13 @@ struct Line {
 
 StopMessages brake_then_reset() { return {.first = {"brake;", "hold;"}, .delay = 0.02, .then = {"reset;"}}; }
 
+// A guard whose program has ended repeats the stop four times: one may be lost.
+std::string repeated_stop() {
+  std::string all;
+  for (int i = 0; i < 5; ++i) all += "brake;hold;reset;";
+  return all;
+}
+
 StopMessages brake() { return {.first = {"brake;"}, .delay = 0, .then = {}}; }
 
 // Runs `program` in a process of its own and returns its number.
@@ -68,7 +75,7 @@ TEST(Guard, StopsDevicesWhenTheProgramIsKilled) {
   EXPECT_EQ(line.device->read(guard_patience).value(), "go;");
   ::kill(program, SIGKILL);
   ::waitpid(program, nullptr, 0);
-  EXPECT_EQ(line.all_heard(), "brake;hold;reset;");
+  EXPECT_EQ(line.all_heard(), repeated_stop());
 }
 
 TEST(Guard, StopsDevicesWhenTheProgramHangs) {
@@ -82,7 +89,7 @@ TEST(Guard, StopsDevicesWhenTheProgramHangs) {
          steady_seconds() < start + guard_patience)
     heard += line.device->read(guard_patience).value();
   EXPECT_GE(steady_seconds() - start, 0.05);
-  EXPECT_EQ(heard, "brake;hold;reset;");
+  EXPECT_TRUE(heard.starts_with("brake;hold;reset;")) << heard;
   EXPECT_FALSE(guard.beat(false)) << "the program must learn that the devices were stopped";
   EXPECT_TRUE(guard.beat(false));
 }
@@ -111,7 +118,7 @@ TEST(Guard, SurvivesWhatEndsTheProgram) {
   EXPECT_EQ(line.device->read(guard_patience).value(), "go;");
   ::kill(-program, SIGINT);  // As Ctrl-C in a terminal does.
   ::waitpid(program, nullptr, 0);
-  EXPECT_EQ(line.all_heard(), "brake;hold;reset;");
+  EXPECT_EQ(line.all_heard(), repeated_stop());
 }
 
 TEST(Guard, StopsAtOnceOnRequest) {
@@ -195,7 +202,7 @@ TEST(Guard, StopsADeviceAtAnAddressByItsNewestMessages) {
   ::kill(program, SIGKILL);
   ::waitpid(program, nullptr, 0);
   EXPECT_EQ(device.heard(), "new;" + std::string(3000, 'x'));
-  EXPECT_EQ(line.all_heard(), "brake;hold;reset;");
+  EXPECT_EQ(line.all_heard(), repeated_stop());
 }
 
 TEST(Guard, EndsAlsoWhenADeviceAtAnAddressIsGone) {

@@ -10,5 +10,9 @@ TEST(RigFaults, GrblAndHeadsNeitherHangNorMoveWhenTheyMustRest) { run_faulty_rig
 
 TEST(RigFaults, Cia402AndHeadsNeitherHangNorMoveWhenTheyMustRest) { run_faulty_rig<Cia402UnderTest>(2, 60); }
 
+TEST(RigFaults, Cia402DrivesWithoutATimeoutAreStoppedByTheGuard) {
+  run_faulty_rig<TrustingCia402UnderTest>(3, 60);
+}
+
 }  // namespace
 }  // namespace flexura

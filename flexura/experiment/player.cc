@@ -48,7 +48,7 @@ Player::Player(const Experiment& experiment, RunRecorder& run_recorder, Progress
   const bool is_other = experiment.true_rig().arm.mechanics != ArmMechanics::kinematic ||
                         (experiment.truth && experiment.truth->arm);
   if (experiment.equipment || experiment.record.cameras || is_other || std::ranges::any_of(tasks_, is_by_rig))
-    rig_ = make_rig(experiment);
+    rig_ = make_rig ? make_rig(experiment) : rig_of(experiment, [this] { return whole_.is_cancelled(); });
   if (rig_ && watcher_ != nullptr)
     for (const CameraConfig& camera : experiment.cameras()) optics_.emplace_back(camera);
   plan(0);

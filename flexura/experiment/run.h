@@ -44,6 +44,6 @@ struct RunResult {
 /// InputError if there is no task, and std::runtime_error if a file cannot be written.
 [[nodiscard]] RunResult run_experiment(const Experiment& as_read, const std::filesystem::path& folder,
                                        Progress& progress, RunWatcher* watcher = nullptr,
-                                       const RigFactory& make_rig = rig_of);
+                                       const RigFactory& make_rig = {});
 
 }  // namespace flexura

@@ -75,8 +75,8 @@ double youngest_age(const SensorConfig& sensor) {
 
 class EquipmentRig : public Rig {
  public:
-  explicit EquipmentRig(const Setup& setup)
-      : equipment_(setup.equipment.value()), devices_(equipment_.watchdog) {
+  EquipmentRig(const Setup& setup, std::function<bool()> is_cancelled)
+      : equipment_(setup.equipment.value()), devices_(equipment_.watchdog, std::move(is_cancelled)) {
     const ArmSetup arm(setup.model_rig());
     arm_ = std::make_unique<ArmEquipment>(equipment_, arm, devices_);
     const std::vector<CameraConfig> cameras = setup.cameras();
@@ -152,10 +152,12 @@ class EquipmentRig : public Rig {
 
 }  // namespace
 
-std::unique_ptr<Rig> equipment_rig(const Setup& setup) { return std::make_unique<EquipmentRig>(setup); }
+std::unique_ptr<Rig> equipment_rig(const Setup& setup, std::function<bool()> is_cancelled) {
+  return std::make_unique<EquipmentRig>(setup, std::move(is_cancelled));
+}
 
-std::unique_ptr<Rig> rig_of(const Setup& setup) {
-  return setup.equipment ? equipment_rig(setup) : simulated_rig(setup);
+std::unique_ptr<Rig> rig_of(const Setup& setup, std::function<bool()> is_cancelled) {
+  return setup.equipment ? equipment_rig(setup, std::move(is_cancelled)) : simulated_rig(setup);
 }
 
 }  // namespace flexura

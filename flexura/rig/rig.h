@@ -90,10 +90,11 @@ using RigFactory = std::function<std::unique_ptr<Rig>(const Setup&)>;
 /// this program crashes or hangs (Guard). The destructor stops all devices. The rig's clock shows real time.
 ///
 /// Throws std::runtime_error with one clear line if a device cannot be used, or, later, if a device fails.
-[[nodiscard]] std::unique_ptr<Rig> equipment_rig(const Setup& setup);
+/// `is_cancelled`: returns whether the user has asked the program to stop, which ends homing; empty: never.
+[[nodiscard]] std::unique_ptr<Rig> equipment_rig(const Setup& setup, std::function<bool()> is_cancelled = {});
 
 /// Returns the rig of an experiment: its equipment if it has a table [rig], otherwise a simulated rig.
-[[nodiscard]] std::unique_ptr<Rig> rig_of(const Setup& setup);
+[[nodiscard]] std::unique_ptr<Rig> rig_of(const Setup& setup, std::function<bool()> is_cancelled = {});
 
 /// Returns the axis positions that the heads and stages of a rig's cameras report now. `optics`: models of
 /// these cameras; their initial positions are used for missing heads or stages. Throws std::runtime_error

@@ -26,6 +26,38 @@ T value_or_throw(Outcome<T> outcome) {
 
 constexpr double between_reads = 0.005;  // s
 
+// While it exists, the guard protects a device that moves by itself: it homes. The guard stops the device if
+// the program hangs, and a stop by the user ends the wait for the device.
+class GuardedHoming {
+ public:
+  GuardedHoming(WatchedLink& link, DeviceAccess& access) : link_(link), guard_(access.guard()) {
+    if (guard_ == nullptr) return;
+    (void)guard_->beat(true);
+    link_.set_watch([this, &access]() -> std::optional<PortFault> {
+      if (!guard_->beat(true)) was_stopped_ = true;
+      if (was_stopped_)
+        return PortFault{
+            FaultKind::refused,
+            fmt::format("homing: the watchdog stopped all devices, because the program was silent "
+                        "for more than {:g} s",
+                        guard_->period())};
+      if (access.is_cancelled()) return PortFault{FaultKind::refused, "homing was cancelled"};
+      return std::nullopt;
+    });
+  }
+  ~GuardedHoming() {
+    link_.set_watch({});
+    if (guard_ != nullptr) (void)guard_->beat(false);
+  }
+  GuardedHoming(const GuardedHoming&) = delete;
+  GuardedHoming& operator=(const GuardedHoming&) = delete;
+
+ private:
+  WatchedLink& link_;
+  Guard* guard_;
+  bool was_stopped_ = false;
+};
+
 double sense_of_axis(const Axis& axis) { return axis.reversed ? -1 : 1; }
 
 // The guard stops a head by the newest request, whose signature is that of the last move.
@@ -68,18 +100,23 @@ bool succeeds(const Function& function) noexcept {
 ArmEquipment::ArmEquipment(const RigEquipment& equipment, const ArmSetup& setup, DeviceAccess& access)
     : equipment_(equipment), setup_(setup), access_(access) {
   if (!setup.drive) throw std::runtime_error("the arm has no drive to run");
+  const auto check_homed = [&access](CommandOutcome homed) {
+    if (!homed && access.is_cancelled()) throw HomingCancelled();
+    value_or_throw(std::move(homed));
+  };
   for (const std::int64_t position : nominal_positions(setup.arm, *setup.drive, setup.initial))
     rest_.push_back(static_cast<double>(position));
   const bool is_homed = equipment.start != StartPositions::declared;
   Guard* const guard = access.guard();
   std::vector<DrivePort*> parts;
   if (equipment.cia402) {
-    link_ = value_or_throw(access.open(*equipment.cia402));
+    link_ = std::make_unique<WatchedLink>(value_or_throw(access.open(*equipment.cia402)));
     can_.emplace(*link_, access.clock(), *equipment.cia402);
     if (guard != nullptr) guard->protect(*link_, cia402_stop(*equipment.cia402));
     value_or_throw(can_->start());
     if (is_homed) {
-      value_or_throw(can_->home());
+      const GuardedHoming homing(*link_, access);
+      check_homed(can_->home());
     } else {
       check_declared(value_or_throw(can_->read()).values);
     }
@@ -87,11 +124,18 @@ ArmEquipment::ArmEquipment(const RigEquipment& equipment, const ArmSetup& setup,
   }
   std::size_t first = 0;
   for (const GrblConfig& config : equipment.grbl) {
-    auto drive = std::make_unique<GrblDrive>(value_or_throw(access.open(config)), access.clock(), config);
+    auto opened = std::make_unique<WatchedLink>(value_or_throw(access.open(config)));
+    WatchedLink& link = *opened;
+    auto drive = std::make_unique<GrblDrive>(std::move(opened), access.clock(), config);
     if (guard != nullptr) guard->protect(drive->link(), grbl_stop(config));
     value_or_throw(drive->connect());
     const auto own = std::span(is_homed ? equipment.home : rest_).subspan(first, drive->axes());
-    value_or_throw(is_homed ? drive->home(own) : drive->set_positions(own));
+    if (is_homed) {
+      const GuardedHoming homing(link, access);
+      check_homed(drive->home(own));
+    } else {
+      value_or_throw(drive->set_positions(own));
+    }
     first += drive->axes();
     parts.push_back(drive.get());
     grbl_.push_back(std::move(drive));
@@ -199,6 +243,10 @@ void ArmEquipment::move_slowly(const std::vector<double>& targets) {
                           "limits of its controller and the positions of home",
                           i + 1, reading.values[i], targets[i]));
       return;
+    }
+    if (access_.is_cancelled()) {
+      (void)drive_->halt();
+      throw HomingCancelled();
     }
     if (clock.now() > end) {
       (void)drive_->halt();

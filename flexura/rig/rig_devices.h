@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,18 +14,26 @@
 #include "flexura/equipment/joined_drive.h"
 #include "flexura/equipment/rig_equipment.h"
 #include "flexura/equipment/visca_bus.h"
+#include "flexura/equipment/watched_link.h"
 #include "flexura/port/driven_arm.h"
 #include "flexura/port/motion_ports.h"
 #include "flexura/sim/arm_setup.h"
 
 namespace flexura {
 
+/// The user has asked the program to stop while the motors went to their first positions. They have been
+/// halted.
+class HomingCancelled : public std::runtime_error {
+ public:
+  HomingCancelled() : std::runtime_error("stopped while the motors went to their first positions") {}
+};
+
 /// The controllers of an arm, connected and with known motor positions.
 class ArmEquipment {
  public:
   /// Connects to all controllers and determines the motor positions (RigEquipment::start). For this, homing
   /// and pretensioning move the motors. Returns when these motions are complete. `access` must outlive this
-  /// object. Throws std::runtime_error with one clear line if a device cannot be used.
+  /// object. Throws std::runtime_error with one clear line if a device cannot be used, and HomingCancelled.
   ArmEquipment(const RigEquipment& equipment, const ArmSetup& setup, DeviceAccess& access);
   /// Waits for the end of a motion in progress, unless an exception is being handled. Then stops the motors.
   ~ArmEquipment();
@@ -61,7 +70,7 @@ class ArmEquipment {
   const ArmSetup setup_;
   DeviceAccess& access_;
   std::vector<double> rest_;
-  std::unique_ptr<Link> link_;
+  std::unique_ptr<WatchedLink> link_;
   std::optional<Cia402Drive> can_;
   std::vector<std::unique_ptr<GrblDrive>> grbl_;
   std::optional<JoinedDrive> joined_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "flexura/estimate/backbone_pixels.h"
 #include "flexura/estimate/picture_observation.h"
 #include "flexura/vision/arm_scene.h"
 #include "flexura/vision/eight_bits.h"
@@ -33,7 +34,7 @@ PictureMeter::PictureMeter(const RigModel& nominal, const ServoConfig& config)
 }
 
 Observation PictureMeter::observation(std::size_t i, const Picture& picture, const View& view,
-                                      std::string& reason) {
+                                      const std::optional<Shape>& expected, std::string& reason) {
   constexpr double moved = 2;  // Distance of the base in px beyond which the finder is created again.
   const Eigen::Vector2d base = view.project(base_).value_or(Eigen::Vector2d(0.5 * view.width, view.height));
   if (!finders_[i] || (finders_[i]->base - base).norm() > moved) {
@@ -47,6 +48,11 @@ Observation PictureMeter::observation(std::size_t i, const Picture& picture, con
   Finder& own = *finders_[i];
   const bool tries_all = !own.method || own.blind % pictures_a_trial == pictures_a_trial - 1;
   own.finder.set_methods(tries_all ? ThresholdMethod::otsu : *own.method, tries_all);
+  if (expected) {
+    constexpr int points = 48;
+    const View seen_from = i < expected->views.size() ? corrected(view, expected->views[i]) : view;
+    own.finder.expect(backbone_pixels(expected->arm, expected->state, seen_from, points));
+  }
   const ArmObservation& found = own.finder.find(picture, whites_[i]);
   own.blind = found.is_found() ? 0 : own.blind + 1;
   if (found.is_found()) own.method = found.threshold.method;
@@ -73,12 +79,13 @@ bool PictureMeter::follow(const PicturePair& pair, const ShapePrediction& predic
 }
 
 ServoObservation PictureMeter::measure(const PicturePair& pair,
-                                       const std::optional<ShapePrediction>& prediction) {
+                                       const std::optional<ShapePrediction>& prediction,
+                                       const std::optional<Shape>& expected) {
   ServoObservation observed;
   observed.frames = pair.frames, observed.time = pair.time();
   if (fitter_ && prediction && follow(pair, *prediction, observed)) return observed;
   for (std::size_t i = 0; i < 2; ++i)
-    observed.seen[i] = observation(i, *pair.frames[i].picture, pair.views[i], observed.reasons[i]);
+    observed.seen[i] = observation(i, *pair.frames[i].picture, pair.views[i], expected, observed.reasons[i]);
   if (are_enough(observed.seen)) return observed;
   for (std::size_t i = 0; i < 2; ++i)
     if (observed.reasons[i].empty() && !are_enough({&observed.seen[i], 1}))

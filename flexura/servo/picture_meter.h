@@ -25,15 +25,17 @@ class PictureMeter {
 
   /// Returns an observation without an estimated shape. For each picture, the observation has the measured
   /// arm, or the reason why no arm was found. `prediction`: predicted shape at the time of the pictures, for
-  /// the setting ServoTracking::model; it is not used with other settings.
+  /// the setting ServoTracking::model; it is not used with other settings. `expected`: predicted shape from
+  /// which the arm is tracked in the pictures with the other settings.
   [[nodiscard]] ServoObservation measure(const PicturePair& pair,
-                                         const std::optional<ShapePrediction>& prediction = {});
+                                         const std::optional<ShapePrediction>& prediction = {},
+                                         const std::optional<Shape>& expected = {});
 
  private:
   // Fits the tube of the predicted shape. Returns false if the fit is not trusted.
   bool follow(const PicturePair& pair, const ShapePrediction& prediction, ServoObservation& observed);
   [[nodiscard]] Observation observation(std::size_t i, const Picture& picture, const View& view,
-                                        std::string& reason);
+                                        const std::optional<Shape>& expected, std::string& reason);
 
   Eigen::Vector3d base_;            // p_WB
   std::array<int, 2> whites_ = {};  // Largest pixel value of each camera's pictures.

@@ -196,9 +196,10 @@ class Session {
       return false;
     }
     const bool was_seen = observer_.last() != nullptr;
-    const auto observed = std::make_shared<ServoObservation>(meter_.measure(
-        *pair, config_.track == ServoTracking::model ? std::optional(observer_.prediction(pair->time()))
-                                                     : std::nullopt));
+    const bool tracks_model = config_.track == ServoTracking::model;
+    const auto observed = std::make_shared<ServoObservation>(
+        meter_.measure(*pair, tracks_model ? std::optional(observer_.prediction(pair->time())) : std::nullopt,
+                       observer_.predicted_shape(pair->time())));
     TargetShape desired = goals_->at(observed->time - result_.start);
     observed->desired = std::move(desired.state), observed->desired_offset = std::move(desired.offset);
     const bool is_found = observer_.observe(observed, now);

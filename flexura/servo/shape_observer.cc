@@ -164,6 +164,11 @@ ArmState ShapeObserver::predicted(double time) const {
   return plus(std::move(driven), minus(last_->estimate.shape.state, rig_.nominal(last_->time)));
 }
 
+std::optional<Shape> ShapeObserver::predicted_shape(double time) const {
+  if (!last_) return std::nullopt;
+  return Shape{last_->estimate.shape.arm, predicted(time), last_->estimate.shape.views};
+}
+
 // Process noise and motion noise are those of the tracker, plus a little for what the model does not know.
 ShapePrediction ShapeObserver::prediction(double time) const {
   constexpr double first_std = 0.1, least_std = 0.01, process_noise = 0.03, motion_noise = 0.1;

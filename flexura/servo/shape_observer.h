@@ -49,6 +49,8 @@ class ShapeObserver {
   /// Returns the predicted shape at `time`, s, with a covariance that bounds the search in pictures. Before
   /// the first observation, it is the model's shape for the drives' position.
   [[nodiscard]] ShapePrediction prediction(double time) const;
+  /// Returns the predicted shape at `time`, s; std::nullopt before the first observation.
+  [[nodiscard]] std::optional<Shape> predicted_shape(double time) const;
   /// Returns the expected equilibrium shape of the arm: the last estimate without oscillation, changed by the
   /// drives' motion since then. `driven`: the model's shape for the drives' position.
   [[nodiscard]] ArmState expected(ArmState driven) const;

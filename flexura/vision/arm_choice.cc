@@ -113,7 +113,9 @@ std::string ArmSearch::contradiction() {
 void ArmSearch::order_ends() {
   auto& [base, tip] = seen.ends;
   bool is_reversed = false;
-  if (config.base) {
+  if (is_expected_) {
+    is_reversed = expected.is_reversed(seen.axis);
+  } else if (config.base) {
     is_reversed = (tip.pixel - *config.base).norm() < (base.pixel - *config.base).norm();
   } else if ((base.kind == AxisEndKind::border) != (tip.kind == AxisEndKind::border)) {
     is_reversed = tip.kind == AxisEndKind::border;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -48,8 +49,9 @@ const std::vector<std::string>& names_of(const AxisEndKind*) {
 struct ArmFinder::Work {
   ArmFinderConfig config;
   ArmSearch search;
-  Image<std::uint8_t> bytes;      // Of a picture with more bits.
-  Image<std::uint8_t> cut_bytes;  // The part of a picture in which the arm is searched.
+  std::vector<Eigen::Vector2d> expected;  // Prediction for the next picture; empty: none.
+  Image<std::uint8_t> bytes;              // Of a picture with more bits.
+  Image<std::uint8_t> cut_bytes;          // The part of a picture in which the arm is searched.
   Image<std::uint16_t> cut_words;
 
   void begin();
@@ -81,12 +83,14 @@ void ArmFinder::Work::begin() {
   search.origin = {0, 0};
   search.inside = nullptr;
   search.stops_at_frame = true;
+  search.expected.set(expected, {0, 0});
 }
 
 // Searches in a part of the picture from now on.
 void ArmFinder::Work::search_from(const PixelBox& box) {
   search.origin = {box.left, box.top};
   if (config.base) search.config.base = *config.base - search.origin;
+  search.expected.set(expected, search.origin);
   search.stops_at_frame = false;
 }
 
@@ -165,6 +169,7 @@ const ArmObservation& ArmFinder::Work::find(const Image<Value>& picture, const I
 // Shifts the result from the searched part to the whole picture.
 const ArmObservation& ArmFinder::Work::end() {
   ArmObservation& seen = search.seen;
+  expected.clear();
   if (search.origin.isZero()) return seen;
   for (AxisSample& sample : seen.axis) sample.pixel += search.origin;
   for (AxisEnd& end : seen.ends) end.pixel += search.origin;
@@ -216,6 +221,10 @@ const ArmObservation& ArmFinder::Work::find_in_scene(const Image<std::uint8_t>& 
 
 void ArmFinder::set_methods(ThresholdMethod first, bool tries_others) {
   work_->config.threshold.method = first, work_->config.tries_other_methods = tries_others;
+}
+
+void ArmFinder::expect(std::span<const Eigen::Vector2d> axis) {
+  work_->expected.assign(axis.begin(), axis.end());
 }
 
 const ArmObservation& ArmFinder::find(const Image<std::uint8_t>& gray) {

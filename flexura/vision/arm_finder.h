@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -103,7 +104,7 @@ struct ArmObservation {
 /// components, and tracking of the tube's two borders with subpixel accuracy. If the threshold of the method
 /// `otsu` shows no arm, the methods `two_mode` and `by_block` are tried. A frame around the picture is
 /// left out. After the first pictures, it allocates no more memory, except for these two cases and for a
-/// scene. The result depends only on the picture, not on earlier pictures.
+/// scene. The result depends only on the picture and the prediction, not on earlier pictures.
 class ArmFinder {
  public:
   /// Makes a finder that uses `config` for every picture.
@@ -115,6 +116,11 @@ class ArmFinder {
 
   /// Sets the thresholding method for the next pictures, and whether others are tried if `first` is `otsu`.
   void set_methods(ThresholdMethod first, bool tries_others);
+
+  /// Sets where the next picture should show the arm's centerline, from base to tip, px: a prediction that is
+  /// right to about the arm's width. The arm is then tracked from the prediction. If the result does not
+  /// agree with the prediction, the picture is searched as without it.
+  void expect(std::span<const Eigen::Vector2d> axis);
 
   /// Finds the arm in a gray picture. The result is valid until the next call. Throws std::invalid_argument
   /// for a picture with more than one channel.

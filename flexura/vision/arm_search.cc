@@ -70,7 +70,7 @@ bool ArmSearch::run(const Image<Value>& picture, const Image<std::uint8_t>& gray
   if (seen.reason.empty()) find_axis(picture, scale);
   add_unexplained(gray);
   // An arm and its mount are one figure if both are equally dark.
-  if (order_.empty() || (seen.is_found() && ends_at_base())) return true;
+  if (order_.empty() || is_expected_ || (seen.is_found() && ends_at_base())) return true;
   first_ = seen;
   if (keep_thin_parts(gray)) {
     find_axis(picture, scale);
@@ -104,7 +104,7 @@ void ArmSearch::segment(const Image<std::uint8_t>& gray, const ThresholdConfig& 
   seen.places.clear();
   seen.ends = {};
   seen.blur = seen.noise = seen.contrast = seen.covered = 0;
-  seen.is_closed = seen.contradicts = is_part_ = false;
+  seen.is_closed = seen.contradicts = is_part_ = is_expected_ = false;
   thinnest_ = std::numeric_limits<double>::infinity();
   seen.threshold = flexura::segment(gray, threshold, components_, blocks_, histogram_samples, inside);
   seen.reason = seen.threshold.reason;
@@ -120,12 +120,33 @@ void ArmSearch::find_axis(const Image<Value>& picture, double scale) {
         fmt::format("no figure with at least {} px is {} enough", least_area, name_of(seen.threshold.figure));
     return;
   }
-  if (!follow_one_of_all(picture, scale)) return;
+  is_expected_ = follow_expected(picture, scale);
+  if (!is_expected_ && !follow_one_of_all(picture, scale)) return;
   order_ends();
   begin_at_base();
   note_ends();
   note_others();
   add_places();
+}
+
+// Tracks the tube from the predicted centerline. Returns false if the result does not agree with it.
+template <typename Value>
+bool ArmSearch::follow_expected(const Image<Value>& picture, double scale) {
+  if (expected.is_empty() || is_part_) return false;
+  expected.seeds(components_, seeds_);
+  for (const TubeSeed& seed : seeds_) {
+    const auto u = static_cast<int>(seed.center.x() + 0.5), v = static_cast<int>(seed.center.y() + 0.5);
+    const Run* run = components_.run_at(u, v);
+    if (run == nullptr || components_.list[run->component].area < least_area) continue;
+    followed_ = run->component;
+    if (follow_from(picture, scale, components_.list[followed_], seed) &&
+        expected.agrees(seen.axis, width_, height_) && contradiction().empty()) {
+      for (AxisSample& sample : seen.axis) sample.sigma = std::max(sample.sigma, config.least_sigma);
+      return true;
+    }
+  }
+  seen.axis.clear();
+  return false;
 }
 
 // Follows the figures in their order until one agrees with the settings; if none does, uses the first tube.

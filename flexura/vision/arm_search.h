@@ -10,6 +10,7 @@
 #include "flexura/vision/arm_finder.h"
 #include "flexura/vision/axis_cover.h"
 #include "flexura/vision/axis_curve.h"
+#include "flexura/vision/expected_axis.h"
 #include "flexura/vision/picture_frame.h"
 #include "flexura/vision/runs.h"
 #include "flexura/vision/threshold.h"
@@ -32,7 +33,8 @@ class ArmSearch {
   /// Whether run() stops if the picture has a frame (picture_frame.h); `part` is then the part inside.
   bool stops_at_frame = false;
   PixelBox part;
-  ArmObservation seen;  ///< Result, in pixels of the searched picture.
+  ExpectedAxis expected;  ///< Prediction in the searched picture; may be empty.
+  ArmObservation seen;    ///< Result, in pixels of the searched picture.
 
   /// Searches the arm. Figures are separated in `gray`, which has 8 bits; borders are measured in `picture`.
   /// `scale` is the unit of `gray` in `picture`. Returns false if it stopped at a frame.
@@ -53,6 +55,8 @@ class ArmSearch {
   void find_axis(const Image<Value>& picture, double scale);
   template <typename Value>
   bool follow_one_of_all(const Image<Value>& picture, double scale);
+  template <typename Value>
+  bool follow_expected(const Image<Value>& picture, double scale);
   template <typename Value>
   bool follow(const Image<Value>& picture, double scale, const Component& component);
   template <typename Value>
@@ -88,6 +92,7 @@ class ArmSearch {
   double least_blur_ = 0;             // Of the places from which a component was followed, px.
   double thinnest_ = 0;               // Width of the thinnest chords of the figures that are no tubes, px.
   std::vector<Eigen::Vector2d> cut_;  // The axis beyond the base.
+  bool is_expected_ = false;          // Whether the axis agrees with the prediction.
   bool is_part_ = false;              // Whether wider parts of the figure were removed.
   int width_ = 0, height_ = 0;        // Of the picture, px.
   std::vector<double> widths_, distances_;

@@ -10,8 +10,9 @@ let validator;
 try {
   validator = (await import("gltf-validator")).default;
 } catch {
-  console.log("skipped: needs `npm ci` in tests/node");
-  process.exit(process.env.FLEXURA_REQUIRE_NODE ? 1 : 0);
+  const isRequired = process.env.FLEXURA_REQUIRE_NODE !== undefined;
+  console.log(`${isRequired ? "failed" : "skipped"}: needs \`npm ci\` in tests/node`);
+  process.exit(isRequired ? 1 : 0);
 }
 
 rmSync(work, { recursive: true, force: true });

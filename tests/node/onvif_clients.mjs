@@ -12,8 +12,9 @@ try {
   ({ Cam } = (await import("onvif")).default);
   ({ OnvifDevice } = (await import("node-onvif")).default);
 } catch {
-  console.log("skipped: needs `npm ci` in tests/node");
-  process.exit(process.env.FLEXURA_REQUIRE_NODE ? 1 : 0);
+  const isRequired = process.env.FLEXURA_REQUIRE_NODE !== undefined;
+  console.log(`${isRequired ? "failed" : "skipped"}: needs \`npm ci\` in tests/node`);
+  process.exit(isRequired ? 1 : 0);
 }
 
 const patience = 200000; // ms

@@ -17,8 +17,9 @@ const browserPath = process.env.FLEXURA_CHROMIUM ?? "/usr/bin/chromium";
 
 const playwright = await import("playwright-core").catch(() => null);
 if (playwright === null || !existsSync(browserPath)) {
-  console.log(`skipped: needs \`npm ci\` in tests/node and ${browserPath}`);
-  process.exit(process.env.FLEXURA_REQUIRE_NODE === undefined ? 0 : 1);
+  const isRequired = process.env.FLEXURA_REQUIRE_NODE !== undefined;
+  console.log(`${isRequired ? "failed" : "skipped"}: needs \`npm ci\` in tests/node and ${browserPath}`);
+  process.exit(isRequired ? 1 : 0);
 }
 
 const browser = await playwright.chromium.launch({

@@ -13,8 +13,9 @@ import { fileURLToPath, pathToFileURL } from "node:url";
 const [flexura, examples, work] = process.argv.slice(2).map((path) => resolve(path));
 const taplo = fileURLToPath(new URL("node_modules/.bin/taplo", import.meta.url));
 if (!existsSync(taplo)) {
-  console.log("skipped: needs `npm ci` in tests/node");
-  process.exit(process.env.FLEXURA_REQUIRE_NODE === undefined ? 0 : 1);
+  const isRequired = process.env.FLEXURA_REQUIRE_NODE !== undefined;
+  console.log(`${isRequired ? "failed" : "skipped"}: needs \`npm ci\` in tests/node`);
+  process.exit(isRequired ? 1 : 0);
 }
 
 rmSync(work, { recursive: true, force: true });

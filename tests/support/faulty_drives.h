@@ -63,14 +63,19 @@ class GrblUnderTest : public DriveUnderTest {
   std::optional<GrblDrive> drive_;
 };
 
-/// Three drives on a CAN bus, which stop by themselves without a sign of life of the program.
+/// Three drives on a CAN bus.
 class Cia402UnderTest : public DriveUnderTest {
  public:
-  Cia402UnderTest(SimulatedThreads& time, std::uint64_t seed)
-      : device_(nodes()), line_(time, device_, "can", false, seed), drive_(line_, time, config()) {}
+  /// `host_timeout`: time after which the drives stop by themselves without a sign of life of the program, s;
+  /// 0: never.
+  Cia402UnderTest(SimulatedThreads& time, std::uint64_t seed, double host_timeout = 0.3)
+      : config_(config(host_timeout)),
+        device_(nodes()),
+        line_(time, device_, "can", false, seed),
+        drive_(line_, time, config_) {}
   DrivePort& drive() override { return drive_; }
   SimulatedLine& line() override { return line_; }
-  StopMessages stop() override { return cia402_stop(config()); }
+  StopMessages stop() override { return cia402_stop(config_); }
   void keep_alive() override { drive_.keep_alive(); }
   bool reset() override { return static_cast<bool>(drive_.start()); }
   std::vector<double> positions(double now) override { return device_.positions(now); }
@@ -85,18 +90,25 @@ class Cia402UnderTest : public DriveUnderTest {
     for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].node = static_cast<std::uint8_t>(i + 1);
     return nodes;
   }
-  static Cia402Config config() {
+  static Cia402Config config(double host_timeout) {
     Cia402Config config;
-    config.host_timeout = 0.3;
+    config.host_timeout = host_timeout;
     for (int node = 1; node <= 3; ++node) {
       Cia402AxisConfig& axis = config.axes.emplace_back();
       axis.node = node;
     }
     return config;
   }
+  Cia402Config config_;
   Cia402Device device_;
   SimulatedLine line_;
   Cia402Drive drive_;
+};
+
+/// Three drives on a CAN bus, which only the guard stops.
+class TrustingCia402UnderTest : public Cia402UnderTest {
+ public:
+  TrustingCia402UnderTest(SimulatedThreads& time, std::uint64_t seed) : Cia402UnderTest(time, seed, 0) {}
 };
 
 }  // namespace flexura

@@ -142,6 +142,8 @@ class Mishaps {
   }
   /// Lets nothing else go wrong until a time.
   void hold(double until) { next_ = std::max(next_, until); }
+  /// Whether nothing can pass the line now.
+  [[nodiscard]] bool is_dead() const { return line_.is_silent || line_.is_gone || line_.is_full; }
   [[nodiscard]] bool is_clean() const {
     return !line_.is_silent && !line_.is_gone && !line_.is_full &&
            line_.faults.lose + line_.faults.cut == 0 &&

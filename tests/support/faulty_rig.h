@@ -186,21 +186,22 @@ class RigUnderTest {
     const double since = time_.now();
     if (!sent) return handle(*sent.fault());
     int before = 0;
-    bool is_clean = false;
+    bool is_clean = false, is_dead = false;
     {
       const auto lock = time_.enter();
       before = guard_.stops();
-      is_clean = arm_mishaps_.is_clean();
-      if (is_clean) {
-        arm_mishaps_.hold(since + 3);
-        rest_.require(since, "the program is silent");
-      }
+      is_clean = arm_mishaps_.is_clean(), is_dead = arm_mishaps_.is_dead();
+      arm_mishaps_.hold(since + 5);
+      if (is_clean) rest_.require(since, "the program is silent");
+      // Stops may be lost on a disturbed line; the guard repeats them. A dead line passes none.
+      constexpr double repetitions = 2;  // s
+      if (!is_clean && !is_dead) rest_.require(since + repetitions, "the program is silent on a bad line");
     }
-    time_.wait_until(since + 1.5);
+    time_.wait_until(since + (is_clean || is_dead ? 1.5 : 3.5));
     {
       const auto lock = time_.enter();
       EXPECT_GT(guard_.stops(), before);
-      ++hangs_;
+      ++hangs_, clean_hangs_ += is_clean ? 1 : 0, disturbed_hangs_ += is_clean || is_dead ? 0 : 1;
     }
     const auto refused = command(far, 4);
     EXPECT_FALSE(refused);
@@ -208,7 +209,6 @@ class RigUnderTest {
       const auto still_refused = command(far, 4);
       EXPECT_FALSE(still_refused) << "the watchdog has stopped the arm, which has not been reset";
     }
-    // A stop may be lost on a line that is already disturbed. The guard sends it once.
     if (is_clean) require_rest(time_.now(), "the watchdog has stopped the arm");
     wait(0.3);
     recover();
@@ -262,13 +262,18 @@ class RigUnderTest {
   void check() const {
     EXPECT_GT(accepted_, run_time_ * 2);
     EXPECT_GT(hangs_, run_time_ / 120);
+    EXPECT_GT(clean_hangs_, 0);
+    // Half of the faults disturb the line, but a short run may have no hang then.
+    if (run_time_ > 300) EXPECT_GT(disturbed_hangs_, 0);
     EXPECT_GT(stops_, run_time_ / 20);
-    EXPECT_GT(rest_.checks(), 1000);
+    constexpr double checks_a_second = 1000, least_share = 0.05;
+    EXPECT_GT(static_cast<double>(rest_.checks()), least_share * checks_a_second * run_time_);
     for (const int readings : head_readings_) EXPECT_GT(readings, run_time_);
   }
   void print() const {
-    std::printf("accepted %d, resets %d, hangs %d, watchdog %d, stops %d, rest checks %ld\n", accepted_,
-                resets_, hangs_, guard_.stops(), stops_, rest_.checks());
+    std::printf("accepted %d, resets %d, hangs %d (clean %d, disturbed %d), ", accepted_, resets_, hangs_,
+                clean_hangs_, disturbed_hangs_);
+    std::printf("watchdog %d, stops %d, rest checks %ld\n", guard_.stops(), stops_, rest_.checks());
     for (const int readings : head_readings_) std::printf("head readings %d\n", readings);
     for (const auto& [name, longest] : calls_.longest())
       std::printf("%s: longest %.3f s\n", name.c_str(), longest);
@@ -318,7 +323,7 @@ class RigUnderTest {
   double next_hang_ = 4;
   bool is_stopped_ = false, is_commanding_ = false, is_resetting_ = false;
   std::optional<double> needs_reset_since_;
-  int accepted_ = 0, resets_ = 0, hangs_ = 0, stops_ = 0;
+  int accepted_ = 0, resets_ = 0, hangs_ = 0, clean_hangs_ = 0, disturbed_hangs_ = 0, stops_ = 0;
   std::array<int, 3> head_readings_{};
   std::map<std::string, int> faults_;
 };

@@ -56,15 +56,23 @@ gstreamer.source = "videotestsrc is-live=true ! video/x-raw,width=160,height=120
 
 // A simulated controller on a serial line.
 struct Controller {
-  Controller() : Controller(open_serial_pair()) {}
-  explicit Controller(SerialPair pair)
-      : path(pair.path), kept(std::move(pair.kept)), server(std::move(pair.device), device) {}
+  explicit Controller(GrblDeviceConfig config = quick_controller())
+      : Controller(open_serial_pair(), std::move(config)) {}
+  Controller(SerialPair pair, GrblDeviceConfig config)
+      : device(std::move(config)),
+        path(pair.path),
+        kept(std::move(pair.kept)),
+        server(std::move(pair.device), device) {}
+  static GrblDeviceConfig quick_controller() {
+    GrblDeviceConfig config;
+    config.settings = {{100, 100}, {101, 100}, {102, 100}, {110, 6000}, {111, 6000}, {112, 6000}};
+    return config;
+  }
   std::vector<double> positions() {
     const auto lock = server.lock();
     return device.positions(DeviceServer::now());
   }
-  GrblDevice device{GrblDeviceConfig{
-      .settings = {{100, 100}, {101, 100}, {102, 100}, {110, 6000}, {111, 6000}, {112, 6000}}}};
+  GrblDevice device;
   std::string path;
   Descriptor kept;
   DeviceServer server;

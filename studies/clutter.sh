@@ -23,9 +23,9 @@ trap 'rm "$table"' EXIT
   echo
   echo "- *Finder* measures the arm in each picture ([Vision](../vision.md#arms-in-front-of-anything)). The region is a rectangle 25 px around the arm's image. The colour is the median along the arm. The pixel of the base is known."
   echo "- *Model* fits the tube to both pictures ([Estimation](../estimation.md#near-a-guess)). Each bend of the guess has a normally distributed error with a standard deviation of 0.1 rad. For the *wrong guess* the standard deviation is 0.3 rad, but the fit assumes 0.1 rad."
-  echo "- Where *a part is hidden*, a plate, 40 px wide, covers 15 % of the arm's length and extends 20 px further, and the arm casts a shadow on the background."
-  echo "- *Axis* is the distance between points of the measured axis and the exact image of the backbone: the median of all pictures' medians, and the 95 % quantile of all points in trusted answers."
-  echo "- An answer is *trusted* if it has no notes. It is *wrong* if more than 5 % of the points of its axis are more than 1.5 px from the exact image, or if the axis is shorter than 80 % of the arm's image."
+  echo "- Where *a part is hidden*, a plate, 40 px wide, covers 15 % of the arm's length and extends 20 px further. The arm also casts a shadow on the background."
+  echo "- *Axis* is the distance between points of the measured axis and the exact image of the backbone. The table has the median of all pictures' medians, and the 95 % quantile of all points in trusted answers."
+  echo "- An answer is *trusted* if it has no notes. It is *wrong* if more than 5 % of its axis points are more than 1.5 px from the exact image. It is also *wrong* if the axis is shorter than 80 % of the arm's image."
   echo "- *Squared error / expectation* is the squared error of the bends, weighted by the inverse of their covariance, per bend, of trusted answers; it should be 1."
   echo
   echo '```console'

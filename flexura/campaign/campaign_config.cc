@@ -176,7 +176,7 @@ const Table<CampaignConfig>& fields_of(const CampaignConfig*) {
           .field("experiment", &C::experiment,
                  {.meaning = "The experiment file, relative to the campaign file.", .required = true})
           .field("set", &C::set,
-                 {.meaning = "Changes of the experiment that are equal in all runs, each as in `--set`: "
+                 {.meaning = "Changes to the experiment that apply to all runs, each in the form of `--set`: "
                              "`\"task.0.duration=1\"`.",
                   .count = {0, most_columns},
                   .default_text = "none"})

@@ -14,7 +14,7 @@ namespace flexura {
 /// Cues that separate the arm from its surroundings in the pictures of one camera (docs/vision.md, "Arms in
 /// front of anything"). All cues are optional. A pixel belongs to the arm only if all given cues agree.
 struct ArmScene {
-  /// Corners of the polygon in which the arm is searched, px. Empty: the whole picture is searched.
+  /// Corners of the polygon that the search for the arm covers, px; empty: the whole picture.
   std::vector<Eigen::Vector2d> region = {};
   /// Picture of the surroundings without the arm, with the same size as the pictures. Empty: not given.
   Image<std::uint8_t> background = {};
@@ -30,7 +30,7 @@ struct ArmScene {
   }
 };
 
-/// The part of a picture in which the arm is searched, and which of its pixels are the arm.
+/// The part of a picture that the search for the arm covers, and which of its pixels are the arm.
 struct ScenePart {
   std::string reason;              ///< Reason why the cues cannot be used for this picture, or "".
   std::vector<std::string> notes;  ///< Messages for the user.

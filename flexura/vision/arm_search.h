@@ -42,7 +42,7 @@ class ArmSearch {
   bool run(const Image<Value>& picture, const Image<std::uint8_t>& gray, double scale,
            const ThresholdConfig& threshold);
 
-  /// Returns whether the arm is hardly anything else: hardly anything else is in the silhouette, and an end
+  /// Returns whether this is probably the arm: hardly anything else is in the silhouette, and an end
   /// is known or the only figure is very slender.
   [[nodiscard]] bool is_clear();
 

@@ -41,8 +41,8 @@ const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*) {
               "target",
               "Target shape of the law, given by bends or by the two angles of the arm's direction."))
           .field("azimuths", &Target::azimuths,
-                 {.meaning = "Azimuths theta of the arm's direction from +Y towards +X, at equal fractions "
-                             "of the length from base to tip. The first azimuth is that of the base. "
+                 {.meaning = "Azimuths theta of the arm's direction from +Y towards +X, at evenly spaced "
+                             "points from base to tip. The first azimuth is that of the base. "
                              "Successive azimuths differ by at most half a turn.",
                   .unit = Unit::radian,
                   .range = between(-50, 50),

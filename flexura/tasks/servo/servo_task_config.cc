@@ -78,8 +78,8 @@ const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
                   .count = {2, most_points},
                   .default_text = "not set"})
           .field("azimuths", &Target::azimuths,
-                 {.meaning = "Azimuths of the arm's direction from +Y towards +X, at equal fractions of the "
-                             "length from base to tip.",
+                 {.meaning = "Azimuths of the arm's direction from +Y towards +X, at evenly spaced "
+                             "points from base to tip.",
                   .unit = Unit::radian,
                   .range = angle_range,
                   .count = {2, most_points},

@@ -14,12 +14,15 @@ namespace {
 using Eigen::Vector2d;
 
 // The figure may be this far from the prediction, px.
-constexpr int reach = 12;
+constexpr int prediction_reach = 12;
+
+// Points outside the picture matter for the curve's length, but not these, px.
+constexpr double far_outside = 1e6;
 
 // Returns a chord of a figure near a point of the prediction; its width is 0 if there is none.
 TubeSeed chord_near(const Components& components, const Vector2d& point, const Vector2d& normal) {
   constexpr double widest = 400;
-  for (int i = 0; i <= 2 * reach; ++i) {
+  for (int i = 0; i <= 2 * prediction_reach; ++i) {
     const Vector2d place = point + (i % 2 == 0 ? i / 2 : -(i + 1) / 2) * normal;
     if (place.x() < 0 || place.y() < 0) continue;
     if (components.run_at(static_cast<int>(place.x() + 0.5), static_cast<int>(place.y() + 0.5)) == nullptr)
@@ -35,8 +38,8 @@ TubeSeed chord_near(const Components& components, const Vector2d& point, const V
 void ExpectedAxis::set(std::span<const Vector2d> pixels, const Vector2d& origin) {
   points_.clear(), lengths_.clear();
   for (const Vector2d& pixel : pixels) {
-    if (!pixel.allFinite()) continue;
     const Vector2d point = pixel - origin;
+    if (!(point.cwiseAbs().maxCoeff() < far_outside)) continue;  // Also NaN.
     const double step = points_.empty() ? 0 : (point - points_.back()).norm();
     lengths_.push_back(points_.empty() ? 0 : lengths_.back() + step);
     points_.push_back(point);
@@ -93,7 +96,7 @@ bool ExpectedAxis::agrees(std::span<const AxisSample> axis, int width, int heigh
   const double usual = median(std::span(widths_));
   for (std::size_t i = 0; i < axis.size(); i += every) {
     double distance = 0;
-    from_base(axis[i].pixel, distance);
+    (void)from_base(axis[i].pixel, distance);
     if (distance > usual + grace) return false;
   }
   double clear = 0;

@@ -14,7 +14,8 @@ namespace flexura {
 /// first pictures it allocates no more memory.
 class ExpectedAxis {
  public:
-  /// Sets the prediction: points from base to tip, px. `origin` is subtracted from them.
+  /// Sets the prediction: points from base to tip, px. `origin` is subtracted from them. Points that are not
+  /// finite or far outside any picture are omitted.
   void set(std::span<const Eigen::Vector2d> pixels, const Eigen::Vector2d& origin);
   [[nodiscard]] bool is_empty() const { return points_.size() < 2; }
 

@@ -85,12 +85,18 @@ bool ArmSearch::is_base_visible() const {
          config.base->y() < height_;
 }
 
+// Returns whether the tracked tube has the width of the settings, if they have one.
+bool ArmSearch::has_width() {
+  const double width = median_width(seen.axis, widths_);
+  return !config.width || (width >= (*config.width)[0] && width <= (*config.width)[1]);
+}
+
 // Returns how the tracked tube differs from what the settings say about the arm; "" if it does not. A base
 // outside the picture says nothing about the visible part.
 std::string ArmSearch::contradiction() {
   if (!config.base && !config.width) return "";
   const double width = median_width(seen.axis, widths_);
-  if (config.width && (width < (*config.width)[0] || width > (*config.width)[1]))
+  if (!has_width())
     return fmt::format(
         "the tube is {:.0f} px wide, but the arm should be {:.0f} to {:.0f} px wide: it may be another "
         "object",

@@ -12,5 +12,9 @@ TEST(LongRigFaults, Cia402AndHeadsNeitherHangNorMoveWhenTheyMustRest) {
   run_faulty_rig<Cia402UnderTest>(2, 600);
 }
 
+TEST(LongRigFaults, Cia402DrivesWithoutATimeoutAreStoppedByTheGuard) {
+  run_faulty_rig<TrustingCia402UnderTest>(3, 600);
+}
+
 }  // namespace
 }  // namespace flexura

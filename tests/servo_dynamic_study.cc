@@ -27,8 +27,8 @@
 namespace flexura {
 namespace {
 
-constexpr std::size_t rigs = 10;       // Targets and trajectories are dealt out to rigs.
-constexpr double rough = 0.3;          // Size of the camera errors before `bundle`, as in servo_study.
+constexpr std::size_t rigs = 10;  // Targets and trajectories are dealt out to rigs.
+constexpr double rough = 0.3;     // Size of the camera errors before `bundle`, as in examples/20_servo_study.
 constexpr double trajectory_time = 6;  // s
 constexpr double push = 0.5;           // At the tip, N.
 

@@ -58,6 +58,37 @@ TEST_F(CampaignProgram, RunsExportsReportsAndReplays) {
   EXPECT_EQ(run("report bow.toml").status, 2);
 }
 
+TEST_F(CampaignProgram, HasTheSameRowsIfItIsSafeFromPowerLoss) {
+  EXPECT_EQ(run("campaign campaign.toml --out usual.db").status, 0);
+  const Ended safe = run("campaign campaign.toml --out safe.db --safe-from-power-loss");
+  EXPECT_EQ(safe.status, 0) << safe.err;
+  EXPECT_THAT(safe.out, HasSubstr("complete: all 60 runs are done"));
+  EXPECT_EQ(rows_text(path("safe.db")), rows_text(path("usual.db")));
+}
+
+TEST_F(CampaignProgram, IsReportedAndExportedWhileItRuns) {
+  // Far more runs than finish before it is stopped.
+  const pid_t child = start("campaign campaign.toml --set samples=1000000 --out a.db", path("out"));
+  std::int64_t rows = 0;
+  while (rows < 40 && ::kill(child, 0) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    try {
+      rows = CampaignResults(path("a.db")).counts().runs;
+    } catch (const InputError&) {
+      // The file is not there yet.
+    }
+  }
+  ASSERT_GE(rows, 40);
+  for (const char* command : {"report a.db", "export a.db --to csv --out a.csv"})
+    EXPECT_EQ(wait(start(command, path("other_out"), path("other_err"))).status, 0) << command;
+  const std::string page = read_text_file(path("a.html"), 1 << 26);
+  EXPECT_THAT(page, HasSubstr("The campaign is not complete."));
+  EXPECT_THAT(page, HasSubstr("of 4000000"));
+  EXPECT_GT(std::ranges::count(read_text_file(path("a.csv"), 1 << 28), '\n'), rows);
+  ::kill(child, SIGINT);
+  EXPECT_EQ(wait(child).status, 130);
+}
+
 TEST_F(CampaignProgram, PausesWhenItsTimeIsOver) {
   const Ended paused = run("campaign campaign.toml --set samples=100000 --set stop.time=0.2");
   EXPECT_EQ(paused.status, 1);

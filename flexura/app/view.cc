@@ -5,13 +5,17 @@
 #include <netinet/in.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <ostream>
 #include <random>
 #include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -19,10 +23,12 @@
 #include "embedded/examples.h"
 #include "embedded/page.h"
 #include "flexura/app/browser.h"
+#include "flexura/app/campaign.h"
 #include "flexura/app/commands.h"
 #include "flexura/app/stop_signal.h"
 #include "flexura/base/node.h"
 #include "flexura/base/source.h"
+#include "flexura/campaign/campaign_file.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/log/results.h"
 #include "flexura/serve/gate.h"
@@ -55,6 +61,34 @@ std::vector<ViewExample> offered_examples() {
   return offered;
 }
 
+// Returns whether a file holds the results of a campaign, by its ending or its content.
+bool is_campaign(const std::string& what) {
+  constexpr std::string_view mark = "SQLite format 3";
+  if (std::filesystem::path(what).extension() == ".db") return true;
+  std::ifstream file(what, std::ios::binary);
+  std::string start(mark.size(), ' ');
+  return file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == mark;
+}
+
+// Returns the rig of the first run whose experiment can be read, and the results of the campaign.
+ViewStart start_of_campaign(const std::string& what) {
+  constexpr std::int64_t most_tries = 100;
+  const CampaignResults results(what);
+  const std::int64_t runs = std::min(results.campaign().design().runs(), most_tries);
+  ViewStart start;
+  for (std::int64_t row = 0; start.rig == nullptr; ++row) {
+    try {
+      start.rig = std::make_shared<const ViewedRig>(results.campaign().experiment(row));
+      start.results = default_replay_folder(what, row);
+    } catch (const InputError&) {
+      if (row + 1 >= runs) throw;
+    }
+  }
+  start.stem = std::filesystem::path(what).stem().string();
+  start.campaign = what;
+  return start;
+}
+
 ViewStart start_of(const std::string& what) {
   ViewStart start;
   std::error_code error;  // Errors are reported by whatever reads the path.
@@ -70,6 +104,8 @@ ViewStart start_of(const std::string& what) {
     start.examples = offered_examples();
     start.text = embedded::examples.front().text;
     start.stem = "paper_arm";
+  } else if (is_campaign(what)) {
+    return start_of_campaign(what);
   } else {
     start.rig = std::make_shared<const ViewedRig>(load_experiment(what));
     start.results = default_results_folder(what);

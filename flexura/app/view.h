@@ -27,7 +27,8 @@ struct ViewerArguments {
 
 /// Arguments of `flexura view`.
 struct ViewArguments {
-  std::string what;  ///< An experiment file or a results folder; "": the paper's arm.
+  std::string
+      what;  ///< An experiment file, a results folder or the results of a campaign; "": the paper's arm.
   ViewerArguments viewer;
 };
 

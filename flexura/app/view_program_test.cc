@@ -19,6 +19,7 @@
 #include "flexura/app/view.h"
 #include "flexura/store/gzip.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/campaign_program.h"
 #include "tests/support/program.h"
 #include "tests/support/raw_client.h"
 #include "tests/support/temporary_folder.h"
@@ -145,6 +146,30 @@ TEST_F(ViewerProgram, ServesThePageOrSaysThatItHasNone) {
             is_built_without ? "text/plain; charset=utf-8" : "text/html; charset=utf-8");
   kill(child, SIGTERM);
   EXPECT_EQ(wait(child).status, 0);
+}
+
+TEST_F(CampaignProgram, IsViewedWithItsReport) {
+  EXPECT_EQ(run("campaign campaign.toml --out a.db").status, 0);
+  std::filesystem::copy_file(path("a.db"), path("other_name"));
+  std::ofstream(path("text.db")) << "no file of SQLite";
+  const Ended refused = run("view text.db --no-browser");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("not the results of a campaign"));
+  for (const char* file : {"a.db", "other_name"}) {
+    std::filesystem::remove(path("out"));
+    const pid_t child = start(std::string("view --no-browser --port 0 ") + file, path("out"));
+    const std::string printed = reported_in(path("out"));
+    const std::string port = port_in(printed);
+    RawClient client(static_cast<std::uint16_t>(std::stoi(port)));
+    client.send("GET /report HTTP/1.1\r\nHost: localhost:" + port + "\r\nAuthorization: Bearer " +
+                printed.substr(printed.find("#token=") + 7, 32) + "\r\n\r\n");
+    const RawAnswer answer = client.read_answer();
+    EXPECT_EQ(answer.status, 200);
+    EXPECT_THAT(answer.body, HasSubstr("Complete: all 60 runs are done"));
+    EXPECT_THAT(answer.body, HasSubstr(std::string("flexura run --from ") + file + " --row "));
+    kill(child, SIGTERM);
+    EXPECT_EQ(wait(child).status, 0);
+  }
 }
 
 // Acts like the page: requests both cameras' pictures and watches until the run is over.

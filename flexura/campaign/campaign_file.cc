@@ -177,6 +177,15 @@ CampaignResults::CampaignResults(const std::filesystem::path& path) : path_(path
   version_ = entry(*file_, "flexura"), reason_ = entry(*file_, "reason");
 }
 
+CampaignCounts CampaignResults::counts() {
+  CampaignCounts counts;
+  // A complete campaign gets no more rows, so the reason is read first.
+  counts.reason = entry(*file_, "reason");
+  SqliteStatement query(*file_, "SELECT status, count(*) FROM runs GROUP BY status");
+  while (query.step()) counts.runs += counts.statuses[query.text(0)] = query.integer(1);
+  return counts;
+}
+
 void CampaignResults::for_each(const std::function<void(const CampaignRow&)>& visit) {
   const CampaignConfig& config = campaign_->config();
   SqliteStatement query(*file_, fmt::format("SELECT id, seed, status, error, seconds{} FROM runs ORDER BY id",

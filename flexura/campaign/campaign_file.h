@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -51,6 +52,13 @@ class CampaignFile {
   std::optional<SqliteFile> file_;
 };
 
+/// How far a campaign is.
+struct CampaignCounts {
+  std::int64_t runs = 0;                         ///< Number of rows.
+  std::map<std::string, std::int64_t> statuses;  ///< Number of rows with each status.
+  std::string reason;                            ///< Why the campaign is complete; "" if runs are missing.
+};
+
 /// Reads the results of a campaign, also while the campaign runs.
 class CampaignResults {
  public:
@@ -60,8 +68,10 @@ class CampaignResults {
   [[nodiscard]] const Campaign& campaign() const { return *campaign_; }
   /// Returns the version of Flexura that wrote the rows.
   [[nodiscard]] const std::string& version() const { return version_; }
-  /// Returns why the campaign is complete; "" if runs are missing.
+  /// Returns why the campaign was complete when the file was opened; "" if runs were missing.
   [[nodiscard]] const std::string& reason() const { return reason_; }
+  /// Counts the rows that the file has now.
+  [[nodiscard]] CampaignCounts counts();
   /// Passes all rows in the order of their numbers. Parameters and measures that are arrays are JSON texts.
   void for_each(const std::function<void(const CampaignRow&)>& visit);
 

@@ -272,7 +272,12 @@ TEST(CalibrateTask, LeavesALogASummaryAReportAndARigToInclude) {
   const Node& calibration = entry_of(result, "calibrations");
   EXPECT_TRUE(*calibration.find("done")->as<bool>());
   EXPECT_LT(std::abs(*calibration.find("remainder")->find("angle_from_square")->as<double>()), 0.1);
-  EXPECT_NE(calibration.find("remainder_in_truth"), nullptr);
+  const auto angle = [&](const char* key) {
+    return *calibration.find(key)->find("angle_from_square")->as<double>();
+  };
+  EXPECT_NEAR(*calibration.find("error_over_sigma")->find("angle")->as<double>() *
+                  *calibration.find("sigma")->find("angle")->as<double>(),
+              angle("remainder") - angle("remainder_in_truth"), 1e-12);
 
   auto counts = logged_counts(result);
   const auto heads = logged<HeadReadingMessage>(result, "/head/front");

@@ -12,11 +12,22 @@
 #include "flexura/kinematics/spatial.h"
 #include "flexura/log/messages.h"
 #include "flexura/model/backbone.h"
+#include "flexura/store/json.h"
 #include "flexura/view/describe.h"
 #include "flexura/view/session.h"
 #include "flexura/view/state_message.h"
 
 namespace flexura {
+namespace {
+
+// A report is a separate page, possibly from another source. It may run its script, but without access to
+// this server.
+constexpr const char* report_policy =
+    "sandbox allow-scripts; default-src 'none'; img-src data:; script-src 'unsafe-inline'; style-src "
+    "'unsafe-inline'; base-uri 'none'; form-action 'none'";
+
+}  // namespace
+
 Node nothing() { return {Node::Table{}, {}}; }
 
 Node bends_answer(const ArmState& state) {
@@ -59,6 +70,14 @@ Node tip_answer(const InverseResult& found, const std::string& danger) {
                       {"moved", {}, {danger.empty(), {}}},
                       {"danger", {}, {danger, {}}}},
           {}};
+}
+
+HttpAnswer failure_answer(int status, const std::string& why) {
+  return {status, "application/json", write_json({Node::Table{{"error", {}, text_node(why)}}, {}}), ""};
+}
+
+HttpAnswer report_answer(std::string page) {
+  return {200, "text/html; charset=utf-8", std::move(page), report_policy};
 }
 
 }  // namespace flexura

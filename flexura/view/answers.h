@@ -5,6 +5,7 @@
 #include "flexura/base/node.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/model/backbone.h"
+#include "flexura/serve/server.h"
 
 // Contents of replies (docs/viewer-protocol.md).
 namespace flexura {
@@ -21,5 +22,9 @@ namespace flexura {
 [[nodiscard]] Node tip_answer(const InverseResult& found, const std::string& danger);
 /// Returns [[bend_x, bend_y], ...] without negative zeros.
 [[nodiscard]] Node bends_answer(const ArmState& state);
+/// Returns the answer for a document that does not exist or cannot be made, with the reason in one line.
+[[nodiscard]] HttpAnswer failure_answer(int status, const std::string& why);
+/// Returns the answer with a report. The page may run its script, but has no access to this server.
+[[nodiscard]] HttpAnswer report_answer(std::string page);
 
 }  // namespace flexura

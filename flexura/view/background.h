@@ -6,8 +6,8 @@
 namespace flexura {
 
 /// Queues for work outside a session's thread. Jobs in one lane run one after another.
-enum class Lane : std::uint8_t { pictures, measures, checks, tasks };
-inline constexpr std::size_t lane_count = 4;
+enum class Lane : std::uint8_t { pictures, measures, checks, tasks, campaign };
+inline constexpr std::size_t lane_count = 5;
 
 /// Runs jobs outside a session's thread.
 class Background {

@@ -29,16 +29,6 @@ namespace {
 constexpr std::int64_t no_image = -1;
 constexpr std::size_t largest_report = std::size_t{256} << 20;
 
-// A report is a separate page, possibly from another source. It may run its script, but without access to
-// this server.
-constexpr const char* report_policy =
-    "sandbox allow-scripts; default-src 'none'; img-src data:; script-src 'unsafe-inline'; style-src "
-    "'unsafe-inline'; base-uri 'none'; form-action 'none'";
-
-HttpAnswer failure(int status, const std::string& why) {
-  return {status, "application/json", write_json({Node::Table{{"error", {}, {why, {}}}}, {}}), ""};
-}
-
 // A link that leads out of the folder is not part of the results.
 std::filesystem::path report_of(const Recording& recording) {
   return file_inside(recording.folder(), report_file_name);
@@ -335,7 +325,7 @@ void RecordingSession::give_image(const ImageAsk& ask, std::function<void(HttpAn
         try {
           answer({200, "image/png", recording->image(camera, static_cast<std::size_t>(place)).png, ""});
         } catch (const std::exception& error) {
-          answer(failure(500, error.what()));
+          answer(failure_answer(500, error.what()));
         }
         return {};
       });
@@ -350,9 +340,9 @@ void RecordingSession::give_series(const SeriesAsk& ask, std::function<void(Http
           answer({200, "application/json",
                   write_json(table->made->answer(ask.names, static_cast<std::size_t>(ask.points))), ""});
         } catch (const ViewRefusal& refusal) {
-          answer(failure(404, refusal.what()));
+          answer(failure_answer(404, refusal.what()));
         } catch (const std::exception& error) {
-          answer(failure(500, error.what()));
+          answer(failure_answer(500, error.what()));
         }
         return {};
       });
@@ -361,10 +351,9 @@ void RecordingSession::give_series(const SeriesAsk& ask, std::function<void(Http
 void RecordingSession::give_report(std::function<void(HttpAnswer)> answer) {
   background().run(Lane::checks, [recording = recording_, answer = std::move(answer)]() -> Background::After {
     try {
-      answer({200, "text/html; charset=utf-8", read_text_file(report_of(*recording), largest_report),
-              report_policy});
+      answer(report_answer(read_text_file(report_of(*recording), largest_report)));
     } catch (const std::exception&) {
-      answer(failure(404, "the run has no report"));
+      answer(failure_answer(404, "the run has no report"));
     }
     return {};
   });

@@ -24,7 +24,8 @@ Node examples_node(const std::vector<ViewExample>& examples) {
   return {std::move(list), {}};
 }
 
-std::string hello_text(const Hello& hello, const ViewStart& start, bool has_rig, bool has_recording) {
+std::string hello_text(const Hello& hello, const ViewStart& start, bool has_rig, bool has_recording,
+                       bool has_campaign) {
   return write_json({Node::Table{{"type", {}, text_node("hello")},
                                  {"version", {}, text_node(std::string(version()))},
                                  {"session", {}, text_node(start.session)},
@@ -36,7 +37,8 @@ std::string hello_text(const Hello& hello, const ViewStart& start, bool has_rig,
                                  {"interval", {}, {hello.interval, {}}},
                                  {"marks", {}, Codec<std::vector<Mark>>::write(hello.marks)},
                                  {"quantities", {}, Codec<std::vector<Quantity>>::write(hello.quantities)},
-                                 {"report", {}, {hello.report, {}}},
+                                 {"report", {}, {hello.report || has_campaign, {}}},
+                                 {"campaign", {}, {has_campaign, {}}},
                                  {"rig", {}, {has_rig, {}}},
                                  {"recording", {}, {has_recording, {}}},
                                  {"examples", {}, examples_node(start.examples)},
@@ -70,6 +72,8 @@ std::string reply_text(const std::optional<std::int64_t>& id, const ViewAnswer& 
 Viewer::Viewer(ViewStart start, Messenger& messenger, Background& background, double now)
     : start_(std::move(start)), messenger_(messenger), background_(background), clock_(now) {
   if (start_.results.empty()) start_.results = std::filesystem::path("results") / "view";
+  if (!start_.campaign.empty())
+    campaign_ = std::make_unique<CampaignWatcher>(start_.campaign, messenger_, background_);
   if (start_.recording != nullptr) {
     recording_ = std::make_unique<RecordingSession>(start_.recording, messenger_, background_);
     start_.rig = start_.recording->rig();
@@ -85,14 +89,17 @@ void Viewer::opened(ClientId client) {
 }
 
 void Viewer::greet(ClientId client) {
-  messenger_.send(client, hello_text(shown_->hello(), start_, has_rig(), has_recording()));
+  messenger_.send(client,
+                  hello_text(shown_->hello(), start_, has_rig(), has_recording(), is_campaign_shown()));
   shown_->opened(client);
+  if (campaign_ != nullptr) campaign_->opened(client);
 }
 
 void Viewer::closed(ClientId client) {
   clients_.erase(client);
   failures_.erase(client);
   shown_->closed(client);
+  if (campaign_ != nullptr) campaign_->closed(client);
 }
 
 Reply Viewer::reply_to(ClientId client, std::int64_t id, std::shared_ptr<const void> debt) {
@@ -307,7 +314,12 @@ void Viewer::show(Session& session) {
 
 void Viewer::asked(const std::string& target, const std::function<void(HttpAnswer)>& answer) {
   try {
-    shown_->take(read_document(target), answer);
+    const Document document = read_document(target);
+    if (is_campaign_shown() && std::holds_alternative<ReportAsk>(document)) {
+      campaign_->give_report(answer);
+    } else {
+      shown_->take(document, answer);
+    }
   } catch (const std::exception& error) {
     answer(
         {404, "application/json", write_json({Node::Table{{"error", {}, text_node(error.what())}}, {}}), ""});
@@ -317,6 +329,7 @@ void Viewer::asked(const std::string& target, const std::function<void(HttpAnswe
 void Viewer::advance(double now) {
   clock_ = now;
   shown_->advance(now);
+  if (campaign_ != nullptr) campaign_->advance(now);
   if (shown_ != live_.get() || !live_->is_over() || is_opening_ || !live_->results()) return;
   open(*live_->results(), [](const ViewAnswer&) {});
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "flexura/view/background.h"
+#include "flexura/view/campaign_watcher.h"
 #include "flexura/view/live_session.h"
 #include "flexura/view/messenger.h"
 #include "flexura/view/recording_session.h"
@@ -36,9 +37,10 @@ struct ViewStart {
   double speed = 0;                   ///< Speed of `run` relative to real time; 0: as fast as possible.
   /// Experiments that the viewer offers to open; empty if the user gave a file.
   std::vector<ViewExample> examples = {};
-  std::string text = {};              ///< Text of the rig's experiment file; "": unknown.
-  std::filesystem::path folder = {};  ///< Folder for saved experiments.
-  std::string stem = "experiment";    ///< Beginning of the names of saved experiments.
+  std::string text = {};                ///< Text of the rig's experiment file; "": unknown.
+  std::filesystem::path folder = {};    ///< Folder for saved experiments.
+  std::string stem = "experiment";      ///< Beginning of the names of saved experiments.
+  std::filesystem::path campaign = {};  ///< Results of a campaign, whose progress is shown; "": none.
 };
 
 /// Parses the requests of clients, answers them, and switches between rig and recording. Not thread-safe.
@@ -70,6 +72,8 @@ class Viewer {
 
  private:
   void greet(ClientId client);
+  /// Returns whether the report is that of the campaign.
+  [[nodiscard]] bool is_campaign_shown() const { return campaign_ != nullptr && shown_ == live_.get(); }
   [[nodiscard]] Reply reply_to(ClientId client, std::int64_t id, std::shared_ptr<const void> debt);
   void take(ClientId client, const Request& request, const std::shared_ptr<const void>& debt);
   void open_last(Reply reply);
@@ -96,6 +100,7 @@ class Viewer {
   std::unique_ptr<LiveSession> live_;            // May be null if a recording was opened first.
   std::unique_ptr<RecordingSession> recording_;  // The last opened recording; may be null.
   Session* shown_ = nullptr;                     // Points to *live_ or *recording_.
+  std::unique_ptr<CampaignWatcher> campaign_;    // Null without a campaign.
   bool is_opening_ = false;
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
 };

@@ -28,10 +28,7 @@ struct RigTrialConfig {
   double principal_point = 10;  ///< px
   double bend = 0.01, length = 0.005;
   bool are_heads_exact = false;  ///< If false, head positions are uniform within half a step of the readings.
-  /// The calibration knows that the relative bend errors are equal in every pose, as they are in the
-  /// simulated truth.
-  bool are_bends_alike = false;
-  double noise = 0.2;  ///< px
+  double noise = 0.2;            ///< px
   std::size_t markers = 9, points = 40;
 };
 

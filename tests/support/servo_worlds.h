@@ -17,14 +17,6 @@ inline LoopRig study_rig(const std::array<WrongStart, 2>& wrong) {
   return rig;
 }
 
-/// The true arm and its model.
-struct ServoWorld {
-  int arcs = 1;  ///< Arcs per section in the model.
-  bool sags =
-      false;  ///< True arm of elastic rods under tendon forces and weight; otherwise one arc per section.
-  bool knows = false;  ///< The model has elastic rods too, 20 % stiffer; otherwise arcs.
-};
-
 /// A true arm of elastic rods with inertia, friction and a load, and the model of it. Both have a drive.
 struct SwingingWorld {
   double stiffness = 1;              ///< True over nominal stiffness.
@@ -109,19 +101,6 @@ inline std::string swinging_world_file(const LoopRig& rig, bool is_colored, cons
       "spool = {{ radius_mm = 10, backlash_deg = {} }}\ntendon = [\n{}]\n[truth.drive.spool]\nbacklash_deg = "
       "{}\n",
       has_rods ? world.model_backlash_deg : 0.0, axes, world.backlash_deg);
-  return text;
-}
-
-/// Returns the file of such a rig: in colour with bands for the calibration, or in gray without bands.
-inline std::string servo_world_file(const LoopRig& rig, bool is_colored, const ServoWorld& world = {}) {
-  std::string text = arcs_rig("method = \"bundle\"\n", rig);
-  if (!is_colored) make_gray(text);
-  const std::string limit = "max_bend_deg = 120\n";
-  for (std::size_t at = text.find(limit); at != std::string::npos; at = text.find(limit, at + 1))
-    text.insert(at + limit.size(), world.arcs == 1 ? "max_bend_rate_deg = 90\n"
-                                                   : "max_bend_rate_deg = 90\nbend_profile = [1, 1, 1]\n");
-  if (world.sags) let_sag("truth.arm", 200e9, text);
-  if (world.knows) let_sag("arm", 240e9, text);
   return text;
 }
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "tests/support/random_cases.h"
-#include "tests/support/spread_tables.h"
 
 namespace flexura {
 namespace {
@@ -30,22 +29,6 @@ TEST(StudyNumbers, AnAimIsMetUpToItselfAndOfNothingThereIsNoVerdict) {
   EXPECT_EQ(verdict(0.0201, 0.02), "missed");
   EXPECT_EQ(verdict(quantile({}, 0.999), 0.05), "not tested");
   EXPECT_EQ(verdict(root_mean_square({}), 0.02), "not tested");
-}
-
-TEST(StudyNumbers, AnAimIsOfAllTrialsAndNotOfThoseThatEnded) {
-  const Aim all{"within 2 %", 0.02, 0.01, {-0.02, 0.01, none}}, share{"", 0.02, 0.01, {-0.02, 0.01}, 2.0 / 3};
-  EXPECT_EQ(aim_row("a", all, 2), "| a | within 2 % | 2 of 2 | met | met (1.581) | 2 |\n");
-  EXPECT_EQ(aim_row("a", all, 3), "| a | within 2 % | 2 of 3 | missed | met (1.581) | 2 |\n");
-  EXPECT_EQ(aim_row("", share, 3), "|  |  | 2 of 3 | met | met (1.581) | 2 |\n");
-  EXPECT_EQ(aim_row("", share, 4), "|  |  | 2 of 4 | missed | met (1.581) | 2 |\n");
-  const Aim one{"", 0.02, 0.01, {0.03}, 1, false}, nothing{"", 0.02, 0.01, {}};
-  EXPECT_EQ(aim_row("", one, 1), "|  |  | 0 of 1 | missed |  | 3 |\n");
-  EXPECT_EQ(aim_row("", nothing, 1), "|  |  | 0 of 1 | missed | not tested () |  |\n");
-  EXPECT_EQ(aim_row("", nothing, 0), "|  |  | 0 of 0 | not tested | not tested () |  |\n");
-}
-
-TEST(StudyNumbers, ASpreadIsOfSizes) {
-  EXPECT_EQ(spread_row("a", {-3, 1}, 0.5, 1), "| a | 4.5 | 6.0 | 6.0 |\n");
 }
 
 TEST(StudyNumbers, EvenSharesAreToldFromUnevenOnes) {

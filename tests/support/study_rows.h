@@ -10,52 +10,19 @@
 
 #include "tests/support/study_numbers.h"
 
-// Output of the servo study.
+// Output of the study of an arm that swings.
 namespace flexura {
 
 // Results of one target's run; errors are those of the simulated truth, as shares of the length.
 struct Arrival {
   bool is_done = false;
   std::string reason;
-  double settled = 0, overshoot = 0, rms = 0, most = 0, tip = 0, limit = 0;
-  // Smallest possible errors with exact camera models assumed (believing), and with the camera prior of the
-  // servo (doubting).
-  double without_prior = 0, with_prior = 0;
+  double settled = 0, overshoot = 0, rms = 0, most = 0, tip = 0;
 };
 
 // Formats a number; "-" if it is NaN.
 inline std::string number(double value, int digits) {
   return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits);
-}
-
-template <class Of>
-std::vector<double> of_done(const std::vector<Arrival>& arrivals, Of of) {
-  std::vector<double> values;
-  for (const Arrival& one : arrivals)
-    if (one.is_done) values.push_back(of(one));
-  return values;
-}
-
-inline void print_row(const std::string& name, const std::vector<Arrival>& arrivals, bool has_floor) {
-  const std::vector<double> settled = of_done(arrivals, [](const Arrival& a) { return a.settled; }),
-                            over = of_done(arrivals,
-                                           [](const Arrival& a) { return 100 * std::max(0.0, a.overshoot); }),
-                            rms = of_done(arrivals, [](const Arrival& a) { return 100 * a.rms; }),
-                            most = of_done(arrivals, [](const Arrival& a) { return 100 * a.most; }),
-                            tip = of_done(arrivals, [](const Arrival& a) { return 100 * a.tip; }),
-                            limit = of_done(arrivals, [](const Arrival& a) { return a.limit; }),
-                            without_prior =
-                                of_done(arrivals, [](const Arrival& a) { return 100 * a.without_prior; }),
-                            with_prior =
-                                of_done(arrivals, [](const Arrival& a) { return 100 * a.with_prior; });
-  const auto pair = [&](const std::vector<double>& values) {
-    return has_floor ? number(quantile(values, 0.5), 3) + " / " + number(quantile(values, 0.95), 3) : "-";
-  };
-  fmt::print("| {} | {}/{} | {} / {} | {} | {} / {} | {} | {} | {} | {} | {} |\n", name, rms.size(),
-             arrivals.size(), number(quantile(settled, 0.5), 2), number(quantile(settled, 0.95), 2),
-             number(quantile(over, 0.95), 1), number(quantile(rms, 0.5), 3), number(quantile(rms, 0.95), 3),
-             number(quantile(most, 1), 3), number(quantile(tip, 0.95), 3), number(quantile(limit, 0), 2),
-             pair(without_prior), pair(with_prior));
 }
 
 // Strips the numbers from a reason, so that equal reasons can be counted.

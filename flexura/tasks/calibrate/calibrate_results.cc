@@ -38,6 +38,16 @@ Node sigma_node(const RigSigmas& sigmas) {
           {}};
 }
 
+// Returns the errors of the estimated results, divided by their estimated standard deviations.
+Node error_over_sigma_node(const RigRemainder& estimated, const RigRemainder& truth,
+                           const RigSigmas& sigmas) {
+  const double angle = estimated.angle - truth.angle;
+  const double zoom_ratio = std::log(estimated.zoom_ratio / truth.zoom_ratio);
+  return {Node::Table{{"angle", {}, number_node(angle / sigmas.angle)},
+                      {"zoom_ratio", {}, number_node(zoom_ratio / sigmas.zoom_ratio)}},
+          {}};
+}
+
 Node step_nodes(const std::vector<RigStep>& steps) {
   Node::Array list;
   for (const RigStep& step : steps) {
@@ -155,7 +165,10 @@ Node::Table run_members(const CalibrationRun& run) {
   add("target", point_node(result.target));
   add("at_start", remainder_node(*result.start_remainder));
   add("remainder", remainder_node(result.remainder));
-  if (run.truth) add("remainder_in_truth", remainder_node(*run.truth));
+  if (run.truth) {
+    add("remainder_in_truth", remainder_node(*run.truth));
+    add("error_over_sigma", error_over_sigma_node(result.remainder, *run.truth, result.steps.back().sigmas));
+  }
   add("verified_px", {Node::Array{number_node(result.verified[0]), number_node(result.verified[1])}, {}});
   add("commanded", {Node::Array{stance_node(run.cameras[0], result.desired.stances[0]),
                                 stance_node(run.cameras[1], result.desired.stances[1])},

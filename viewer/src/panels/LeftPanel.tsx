@@ -4,7 +4,8 @@ import { use_app } from '../ui/app';
 import { left_tabs } from './registry';
 
 export function LeftPanel() {
-  const open = useSignal(left_tabs[0].id);
+  // The first tab that is shown, until the user chooses.
+  const open = useSignal('');
   const { viewer } = use_app();
   const bad = viewer.events.value.filter(({ level }) => level !== 'info').length;
   const tabs = left_tabs.filter(({ shown }) => shown?.(viewer.hello.value) ?? true);

@@ -2,6 +2,7 @@ import type { FunctionComponent } from 'preact';
 import type { Hello } from '../protocol/types';
 import { ArmPanel } from './ArmPanel';
 import { CameraPanel } from './CameraPanel';
+import { CampaignPanel } from './CampaignPanel';
 import { EventPanel } from './EventPanel';
 import { ForcePanel, has_forces } from './ForcePanel';
 import { ScenePanel } from './ScenePanel';
@@ -17,6 +18,7 @@ export interface Tab {
 
 /** The tabs on the left. A new panel needs one line here and one file. */
 export const left_tabs: Tab[] = [
+  { id: 'campaign', label: 'Campaign', title: 'Progress and results of the campaign', Panel: CampaignPanel, shown: (hello) => hello?.campaign === true },
   { id: 'arm', label: 'Arm', title: 'The arm’s shape and its tip', Panel: ArmPanel },
   { id: 'forces', label: 'Forces', title: 'What pushes the arm, its energies and contacts', Panel: ForcePanel, shown: has_forces },
   { id: 'cameras', label: 'Cameras', title: 'Pan, tilt, zoom and stage of each camera', Panel: CameraPanel },

@@ -173,6 +173,8 @@ export interface Hello {
   marks: Mark[];
   quantities: Quantity[];
   report: boolean;
+  /** The progress of a campaign follows in messages `campaign`; the report is that of the campaign. */
+  campaign?: boolean;
   /** There is a rig to switch to. */
   rig: boolean;
   /** There is a recording to open. */
@@ -215,6 +217,32 @@ export interface ConditionMessage {
   condition: Condition;
   /** Why; may be "". */
   text: string;
+}
+
+/** Numbers of runs by intervals of equal width of a measure. */
+export interface CampaignHistogram {
+  name: string;
+  low: number;
+  high: number;
+  bins: number[];
+}
+
+/** How far a campaign is. */
+export interface CampaignMessage {
+  type: 'campaign';
+  runs: number;
+  total: number;
+  /** Number of runs with each status. */
+  statuses: Record<string, number>;
+  /** Finished runs per second; 0 if none has finished for a while, null if not known yet or complete. */
+  rate: number | null;
+  /** Time left, s, if known. */
+  left: number | null;
+  /** Why the campaign is complete; "" if runs are missing. */
+  reason: string;
+  measures: CampaignHistogram[];
+  /** Why the results cannot be read. */
+  error?: string;
 }
 
 /** Drawn upon a camera's picture; one file a kind in src/overlays. */
@@ -284,6 +312,7 @@ export type TextMessage =
   | EventMessage
   | ProgressMessage
   | ConditionMessage
+  | CampaignMessage
   | Reply
   | OverlayMessage
   | GhostMessage;

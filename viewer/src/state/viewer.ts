@@ -6,7 +6,7 @@ import type { Entry } from '../connection/entry';
 import {
   decode_extras, decode_image, decode_state, flag_running, type ImageMessage, kind_extras, kind_image, kind_of, kind_state, type State,
 } from '../protocol/state';
-import type { ConditionMessage, EventMessage, ExtraOverlay, Extras, GhostMessage, Hello, Layer, ProgressMessage, Scene, TextMessage } from '../protocol/types';
+import type { CampaignMessage, ConditionMessage, EventMessage, ExtraOverlay, Extras, GhostMessage, Hello, Layer, ProgressMessage, Scene, TextMessage } from '../protocol/types';
 import { Commander } from './commander';
 import { History } from './history';
 import { Measured } from './measured';
@@ -43,6 +43,7 @@ export class Viewer implements LinkListener {
   readonly events = signal<EventMessage[]>([]);
   readonly progress = signal<ProgressMessage | null>(null);
   readonly condition = signal<ConditionMessage | null>(null);
+  readonly campaign = signal<CampaignMessage | null>(null);
   readonly layers = signal<Record<string, Layer[]>>({});
   /** The newest extras; they belong to the newest pictures. */
   readonly extras = signal<Extras | null>(null);
@@ -126,6 +127,9 @@ export class Viewer implements LinkListener {
       case 'condition':
         this.condition.value = message;
         return;
+      case 'campaign':
+        this.campaign.value = message;
+        return;
       case 'overlay':
         this.layers.value = { ...this.layers.value, [message.camera]: message.layers };
         return;
@@ -169,7 +173,10 @@ export class Viewer implements LinkListener {
       || before.title !== hello.title || before.duration !== hello.duration;
     this.hello.value = hello;
     this.scene.value = hello.scene;
-    if (before && before.session !== hello.session) this.notices.info('The program was started again.');
+    if (before && before.session !== hello.session) {
+      this.notices.info('The program was started again.');
+      this.campaign.value = null;
+    }
     if (afresh) {
       this.forget();
       this.playback.start(hello.mode, hello.duration, hello.interval);

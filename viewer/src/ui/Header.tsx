@@ -120,7 +120,8 @@ function Rig() {
   const ask = (what: string) => () => void viewer.commander.plain(what);
   const connected = viewer.link.status.value.kind === 'open';
   const report = hello.report && (
-    <a class="button quiet" href="report" target="_blank" rel="noopener" title="The report of this run, in a tab of its own"><Icon name="report" />Report</a>
+    <a class="button quiet" href="report" target="_blank" rel="noopener"
+      title={`The report of ${hello.campaign ? 'the campaign' : 'this run'}, in a tab of its own`}><Icon name="report" />Report</a>
   );
   if (hello.mode === 'recording') {
     viewer.tick.value;

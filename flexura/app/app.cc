@@ -70,10 +70,13 @@ void add_new(CLI::App& app, Command& chosen) {
 void add_view(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<ViewArguments>();
   CLI::App* view = add_command(app, "view", command_group::experiments,
-                               "Show a rig or a run in the browser, and move the simulated rig interactively",
-                               "flexura view experiment.toml\nflexura view results/experiment");
+                               "Show a rig, a run or pictures in the browser, and move the simulated rig "
+                               "interactively",
+                               "flexura view experiment.toml\nflexura view results/experiment\n"
+                               "flexura view photo.png");
   view->add_option("WHAT", arguments->what,
-                   "An experiment file, or a folder made by `flexura run` (default: the paper's arm)")
+                   "An experiment file, a folder made by `flexura run`, or picture files (default: the "
+                   "paper's arm)")
       ->type_name("");
   add_viewer_options(*view, arguments->viewer);
   view->callback([&chosen, arguments] {

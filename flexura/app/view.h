@@ -27,7 +27,8 @@ struct ViewerArguments {
 
 /// Arguments of `flexura view`.
 struct ViewArguments {
-  std::string what;  ///< An experiment file or a results folder; "": the paper's arm.
+  /// An experiment file, a results folder, or picture files; empty: the paper's arm.
+  std::vector<std::string> what = {};
   ViewerArguments viewer;
 };
 

@@ -69,14 +69,15 @@ void add_new(CLI::App& app, Command& chosen) {
 
 void add_view(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<ViewArguments>();
-  CLI::App* view =
-      add_command(app, "view", command_group::experiments,
-                  "Show a rig, a run or a campaign in the browser, and move the simulated rig interactively",
-                  "flexura view experiment.toml\nflexura view results/experiment\n"
-                  "flexura view results/campaign.db");
-  view->add_option("WHAT", arguments->what,
-                   "An experiment file, a folder made by `flexura run`, or a file made by `flexura campaign` "
-                   "(default: the paper's arm)")
+  CLI::App* view = add_command(app, "view", command_group::experiments,
+                               "Show a rig, a run, a campaign or pictures in the browser, and move the "
+                               "simulated rig interactively",
+                               "flexura view experiment.toml\nflexura view results/experiment\n"
+                               "flexura view results/campaign.db\nflexura view photo.png");
+  view->add_option(
+          "WHAT", arguments->what,
+          "An experiment file, a folder made by `flexura run`, a file made by `flexura campaign`, or "
+          "picture files (default: the paper's arm)")
       ->type_name("");
   add_viewer_options(*view, arguments->viewer);
   view->callback([&chosen, arguments] {

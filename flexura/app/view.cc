@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <memory>
 #include <optional>
 #include <ostream>
 #include <random>
@@ -26,6 +28,7 @@
 #include "flexura/app/campaign.h"
 #include "flexura/app/commands.h"
 #include "flexura/app/stop_signal.h"
+#include "flexura/base/bytes.h"
 #include "flexura/base/node.h"
 #include "flexura/base/source.h"
 #include "flexura/campaign/campaign_file.h"
@@ -34,7 +37,9 @@
 #include "flexura/serve/gate.h"
 #include "flexura/store/gzip.h"
 #include "flexura/store/text_file.h"
+#include "flexura/view/file_session.h"
 #include "flexura/view/recording.h"
+#include "flexura/vision/picture_file.h"
 
 namespace flexura {
 namespace {
@@ -65,6 +70,8 @@ std::vector<ViewExample> offered_examples() {
 bool is_campaign(const std::string& what) {
   constexpr std::string_view mark = "SQLite format 3";
   if (std::filesystem::path(what).extension() == ".db") return true;
+  std::error_code error;  // Errors are reported by whatever reads the file.
+  if (!std::filesystem::is_regular_file(what, error)) return false;
   std::ifstream file(what, std::ios::binary);
   std::string start(mark.size(), ' ');
   return file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == mark;
@@ -89,13 +96,58 @@ ViewStart start_of_campaign(const std::string& what) {
   return start;
 }
 
-ViewStart start_of(const std::string& what) {
+bool is_log(const std::filesystem::path& file) {
+  return file.extension() == std::filesystem::path(log_file_name).extension();
+}
+
+// Returns whether a file is a picture: binary, but neither a log nor a campaign, or a PNM file, whose kind is
+// a letter P and one character.
+bool is_picture(const std::string& file) {
+  std::error_code error;  // Errors are reported by whatever reads the file.
+  if (!std::filesystem::is_regular_file(file, error) || is_log(file) || is_campaign(file)) return false;
+  constexpr std::size_t enough = 512;
+  std::string start(enough, ' ');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(start.data(), static_cast<std::streamsize>(enough));
+  start.resize(static_cast<std::size_t>(stream.gcount()));
+  if (start.find('\0') != std::string::npos) return true;
+  constexpr std::string_view blanks = " \n\r\t";
+  return start.size() > 2 && start[0] == 'P' && blanks.find(start[2]) != std::string_view::npos;
+}
+
+// Returns picture files under the names of the files. Equal names get numbers.
+std::vector<ViewedPicture> pictures_of(const std::vector<std::string>& files) {
+  if (files.size() > most_viewed_pictures)
+    throw input_error(
+        "WHAT", fmt::format("{} picture files: expected at most {}", files.size(), most_viewed_pictures));
+  std::vector<ViewedPicture> pictures;
+  std::map<std::string, int> count;
+  for (const std::string& file : files) {
+    const std::string text = read_text_file(file, most_picture_bytes);
+    auto photograph = std::make_shared<const Photograph>(decode_picture(bytes_of(text), file));
+    const int width = photograph->bytes.width(), height = photograph->bytes.height();
+    if (std::max(width, height) > most_viewed_side)
+      throw input_error(
+          file, fmt::format("{} x {} px: expected at most {} px a side", width, height, most_viewed_side));
+    std::string name = std::filesystem::path(file).filename().string();
+    if (const int number = ++count[name]; number > 1) name += fmt::format(" ({})", number);
+    pictures.push_back({std::move(name), std::move(photograph)});
+  }
+  return pictures;
+}
+
+ViewStart start_of(const std::vector<std::string>& arguments) {
   ViewStart start;
+  if (arguments.size() > 1 || (arguments.size() == 1 && is_picture(arguments.front()))) {
+    start.pictures = pictures_of(arguments);
+    return start;
+  }
+  const std::string what = arguments.empty() ? "" : arguments.front();
   std::error_code error;  // Errors are reported by whatever reads the path.
   if (std::filesystem::is_directory(what, error)) {
     start.recording = std::make_shared<const Recording>(what);
     start.results = std::filesystem::path("results") / "view";
-  } else if (std::filesystem::path(what).extension() == std::filesystem::path(log_file_name).extension()) {
+  } else if (is_log(what)) {
     throw input_error(what, "is a log: expected the results folder that contains this log");
   } else if (what.empty()) {
     start.rig = std::make_shared<const ViewedRig>(

@@ -27,8 +27,9 @@ struct ViewerArguments {
 
 /// Arguments of `flexura view`.
 struct ViewArguments {
-  std::string
-      what;  ///< An experiment file, a results folder or the results of a campaign; "": the paper's arm.
+  /// An experiment file, a results folder, the results of a campaign, or picture files; empty: the paper's
+  /// arm.
+  std::vector<std::string> what = {};
   ViewerArguments viewer;
 };
 

@@ -126,6 +126,26 @@ TEST_F(ViewerProgram, ServesWhatARunLeft) {
   EXPECT_EQ(wait(child).status, 0);
 }
 
+TEST_F(ViewerProgram, ServesPictureFiles) {
+  std::ofstream(path("a.pgm")) << "P2\n3 2\n255\n0 1 2 3 4 5\n";
+  for (const char* files : {"a.pgm", "a.pgm ./a.pgm"}) {
+    std::filesystem::remove(path("out"));
+    const pid_t child = start(std::string("view --no-browser --port 0 ") + files, path("out"));
+    EXPECT_THAT(reported_in(path("out")), HasSubstr("viewer: ")) << files;
+    kill(child, SIGTERM);
+    EXPECT_EQ(wait(child).status, 0);
+  }
+  // Several files must all be pictures.
+  for (const std::string& files :
+       {"a.pgm " + paper_file, std::string("a.pgm missing.png"), std::string("a.pgm .")}) {
+    const Ended ended = run("view --no-browser --port 0 " + files);
+    EXPECT_EQ(ended.status, 2) << files;
+    EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;
+  }
+  std::ofstream(path("cut.png"), std::ios::binary) << std::string("\x89PNG\r\n\x1a\n\0\0", 10);
+  EXPECT_EQ(run("view --no-browser cut.png").status, 2);
+}
+
 // Returns the port in the address that a viewer prints.
 std::string port_in(const std::string& printed) {
   const std::size_t at = printed.find("127.0.0.1:") + 10;

@@ -13,6 +13,7 @@
 #include "flexura/log/messages.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/render/scene_maker.h"
+#include "flexura/rig/seeing_config.h"
 
 namespace flexura {
 namespace {
@@ -118,15 +119,31 @@ Node obstacle_nodes(const ViewedRig& rig) {
   return {std::move(list), {}};
 }
 
+// Returns region and colour of a camera's [[seeing]].
+Node seeing_node(const SeeingConfig& seeing) {
+  Node::Table table;
+  if (!seeing.region.empty()) {
+    Node::Array corners;
+    for (const auto& corner : seeing.region) corners.push_back(numbers(corner));
+    table.push_back({"region", {}, {std::move(corners), {}}});
+  }
+  if (seeing.color) table.push_back({"color", {}, numbers(*seeing.color)});
+  if (!seeing.background.empty()) table.push_back({"background", {}, {true, {}}});
+  return {std::move(table), {}};
+}
+
 Node camera_nodes(const ViewedRig& rig) {
   Node::Array list;
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const SensorConfig& sensor = rig.sensors[i];
-    list.push_back({Node::Table{{"name", {}, text_node(rig.cameras[i].config().name)},
-                                {"width", {}, {sensor.width, {}}},
-                                {"height", {}, {sensor.height, {}}},
-                                {"channels", {}, {std::int64_t{sensor.channels()}, {}}}},
-                    {}});
+    const std::string& name = rig.cameras[i].config().name;
+    Node::Table camera{{"name", {}, text_node(name)},
+                       {"width", {}, {sensor.width, {}}},
+                       {"height", {}, {sensor.height, {}}},
+                       {"channels", {}, {std::int64_t{sensor.channels()}, {}}}};
+    const auto seeing = std::ranges::find(rig.experiment.seeing, name, &SeeingConfig::camera);
+    if (seeing != rig.experiment.seeing.end()) camera.push_back({"seeing", {}, seeing_node(*seeing)});
+    list.push_back({std::move(camera), {}});
   }
   return {std::move(list), {}};
 }

@@ -12,6 +12,7 @@
 #include "flexura/port/camera_moves.h"
 #include "flexura/store/json.h"
 #include "flexura/view/answers.h"
+#include "flexura/view/seeing_choice.h"
 
 namespace flexura {
 namespace {
@@ -207,7 +208,7 @@ void LiveSession::require_free() const {
 }
 
 void LiveSession::start_run(const RunRequest& request, const Reply& reply) {
-  Experiment experiment = viewed()->experiment;
+  Experiment experiment = with_choices(viewed()->experiment, request.seeing);
   if (experiment.task.empty()) throw ViewRefusal("the experiment has no tasks");
   if (request.task) {
     const auto place = static_cast<std::size_t>(*request.task);

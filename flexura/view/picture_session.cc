@@ -9,6 +9,9 @@
 
 #include "flexura/port/camera_port.h"
 #include "flexura/sim/simulated_camera.h"
+#include "flexura/view/arm_layers.h"
+#include "flexura/view/seeing_choice.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 
@@ -17,12 +20,14 @@ PictureSession::PictureSession(const ViewedRigPtr& rig, Messenger& messenger, Ba
       messenger_(messenger),
       background_(background),
       room_(rig, messenger, background, streams_),
-      measures_(background, Lane::measures) {}
+      measures_(background, Lane::measures),
+      colors_(background, Lane::measures) {}
 
 void PictureSession::closed(ClientId client) {
   streams_.close(client);
   room_.close(client);
   measures_.close(client);
+  colors_.close(client);
 }
 
 std::size_t PictureSession::place_of(const std::string& camera) const {
@@ -62,6 +67,17 @@ void PictureSession::Taker::operator()(const AckRequest& ack) const {
   done();
 }
 
+void PictureSession::Taker::operator()(const ColorRequest& color) const {
+  const std::size_t camera = pictures.place_of(color.camera);
+  pictures.colors_.ask(
+      {client, camera},
+      [look = pictures.look({client, camera}), u = static_cast<int>(color.u), v = static_cast<int>(color.v)] {
+        const SeenPicture seen = look();
+        return color_answer(eight_bits(*seen.picture, seen.white), seen.number, u, v);
+      },
+      std::move(reply));
+}
+
 void PictureSession::Taker::operator()(const MeasureRequest& measure) const {
   const std::size_t camera = pictures.place_of(measure.camera);
   const auto names = layer_names();
@@ -69,24 +85,24 @@ void PictureSession::Taker::operator()(const MeasureRequest& measure) const {
       measure.layers.value_or(std::vector<std::string>(names.begin(), names.end()));
   pictures.measures_.ask(
       {client, camera},
-      [rig = pictures.viewed_, look = pictures.look({client, camera}), layers = std::move(layers)] {
-        return measure_answer(*rig, look(), layers);
-      },
+      [rig = pictures.viewed_, look = pictures.look({client, camera}), layers = std::move(layers),
+       choice = measure.seeing] { return measure_answer(*rig, look(), layers, choice ? &*choice : nullptr); },
       std::move(reply));
 }
 
-void PictureSession::Taker::operator()(const ShapeRequest& /*shape*/) const {
+void PictureSession::Taker::operator()(const ShapeRequest& shape) const {
   const std::size_t cameras = pictures.viewed_->cameras.size();
   if (cameras < 2) throw ViewRefusal("a shape needs pictures of two cameras: this rig has fewer cameras");
+  for (const CameraSeeingChoice& choice : shape.seeing) (void)pictures.place_of(choice.camera);
   std::vector<Look> looks;
   looks.reserve(cameras);
   for (std::size_t camera = 0; camera < cameras; ++camera) looks.push_back(pictures.look({client, camera}));
   pictures.measures_.ask(
       {client, cameras},
-      [rig = pictures.viewed_, looks = std::move(looks)] {
+      [rig = pictures.viewed_, looks = std::move(looks), choices = shape.seeing] {
         std::vector<SeenPicture> seen;
         for (const Look& look : looks) seen.push_back(look());
-        return shape_answer(*rig, seen);
+        return shape_answer(*rig, seen, choices);
       },
       std::move(reply));
 }

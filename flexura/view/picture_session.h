@@ -35,6 +35,7 @@ class PictureSession : public Session {
     void done(Node result = {Node::Table{}, {}}) const;
     void operator()(const ImagesRequest& images) const;
     void operator()(const AckRequest& ack) const;
+    void operator()(const ColorRequest& color) const;
     void operator()(const MeasureRequest& measure) const;
     void operator()(const ShapeRequest& shape) const;
     void operator()(const PingRequest& ping) const;
@@ -64,7 +65,7 @@ class PictureSession : public Session {
   Background& background_;
   ImageStreams streams_;
   PictureRoom room_;
-  LatestJobs measures_;
+  LatestJobs measures_, colors_;
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
 };
 

@@ -9,7 +9,7 @@
 #include "flexura/base/problems.h"
 #include "flexura/base/table.h"
 #include "flexura/store/json.h"
-#include "flexura/view/seen_arm.h"
+#include "flexura/view/arm_layers.h"
 
 namespace flexura {
 
@@ -32,6 +32,8 @@ constexpr double farthest = 1e9;
 constexpr std::size_t most_sections = 10000;
 const NumberRange any_place = between(-farthest, farthest);
 constexpr const char* speed_meaning = "speed relative to real time; 0: as fast as possible";
+constexpr const char* seeing_meaning = "what separates the arm from its surroundings, by camera";
+constexpr std::size_t most_cameras = 255;
 const NumberRange speed_range = between(0, 1000);
 
 template <class S>
@@ -199,7 +201,8 @@ const Table<RunRequest>& fields_of(const RunRequest*) {
       Table<RunRequest>("run", "Runs the experiment's tasks.")
           .field("task", &RunRequest::task,
                  {.meaning = "index of the only task to run, from 0", .range = between(0, farthest)})
-          .field("speed", &RunRequest::speed, {.meaning = speed_meaning, .range = speed_range});
+          .field("speed", &RunRequest::speed, {.meaning = speed_meaning, .range = speed_range})
+          .field("seeing", &RunRequest::seeing, {.meaning = seeing_meaning, .count = {0, most_cameras}});
   return table;
 }
 const Table<SpeedRequest>& fields_of(const SpeedRequest*) {
@@ -292,12 +295,24 @@ const Table<PixelRequest>& fields_of(const PixelRequest*) {
   return table;
 }
 
+const Table<ColorRequest>& fields_of(const ColorRequest*) {
+  static const auto table =
+      Table<ColorRequest>("color", "Requests the colour of the arm at a pixel.")
+          .field("camera", &ColorRequest::camera, {.required = true})
+          .field("u", &ColorRequest::u, {.range = between(0, 65535), .required = true})
+          .field("v", &ColorRequest::v, {.range = between(0, 65535), .required = true})
+          .check([](const ColorRequest& color, Reader& reader) { check_camera(color.camera, reader); });
+  return table;
+}
+
 const Table<MeasureRequest>& fields_of(const MeasureRequest*) {
   static const auto table =
       Table<MeasureRequest>("measure", "Measures the arm in a picture.")
           .field("camera", &MeasureRequest::camera, {.required = true})
           .field("layers", &MeasureRequest::layers,
                  {.meaning = "names of the layers to draw", .count = {0, layer_names().size()}})
+          .field("seeing", &MeasureRequest::seeing,
+                 {.meaning = "what separates the arm from its surroundings"})
           .check([](const MeasureRequest& measure, Reader& reader) {
             check_camera(measure.camera, reader);
             for (std::size_t i = 0; measure.layers && i < measure.layers->size(); ++i) {
@@ -311,7 +326,12 @@ const Table<MeasureRequest>& fields_of(const MeasureRequest*) {
   return table;
 }
 
-const Table<ShapeRequest>& fields_of(const ShapeRequest*) { return bare<ShapeRequest>("shape"); }
+const Table<ShapeRequest>& fields_of(const ShapeRequest*) {
+  static const auto table =
+      Table<ShapeRequest>("shape", "Estimates the shape of the arm from the pictures of all cameras.")
+          .field("seeing", &ShapeRequest::seeing, {.meaning = seeing_meaning, .count = {0, most_cameras}});
+  return table;
+}
 
 const Table<PointRequest>& fields_of(const PointRequest*) {
   static const auto table =

@@ -10,6 +10,7 @@
 
 #include "flexura/base/fields.h"
 #include "flexura/model/arm_config.h"
+#include "flexura/view/seeing_choice.h"
 
 // Requests of clients (docs/viewer-protocol.md, "From the page").
 namespace flexura {
@@ -49,6 +50,8 @@ struct ReleaseRequest {};
 struct RunRequest {
   std::optional<std::int64_t> task;  ///< Index of the task, from 0; missing: all tasks.
   double speed = 1;                  ///< Speed relative to real time; 0: as fast as possible.
+  /// Regions and colours that replace those of the experiment.
+  std::vector<CameraSeeingChoice> seeing = {};
 };
 /// Changes the speed of an active run of tasks.
 struct SpeedRequest {
@@ -99,11 +102,20 @@ struct PixelRequest {
   std::string camera;
   std::int64_t u = 0, v = 0;
 };
+/// Requests the colour of the arm at a pixel.
+struct ColorRequest {
+  std::string camera;
+  std::int64_t u = 0, v = 0;
+};
 struct MeasureRequest {
   std::string camera;
   std::optional<std::vector<std::string>> layers;  ///< Names of the layers; default: all layers.
+  /// Replaces region and colour in the experiment, and the projected base; default: nothing is replaced.
+  std::optional<SeeingChoice> seeing = {};
 };
-struct ShapeRequest {};
+struct ShapeRequest {
+  std::vector<CameraSeeingChoice> seeing = {};  ///< As in MeasureRequest, for some of the cameras.
+};
 struct PointRequest {
   double s = 0;  ///< Arc length along the unstretched arm, m.
 };
@@ -132,6 +144,7 @@ const Table<AtRequest>& fields_of(const AtRequest*);
 const Table<ImagesRequest>& fields_of(const ImagesRequest*);
 const Table<AckRequest>& fields_of(const AckRequest*);
 const Table<PixelRequest>& fields_of(const PixelRequest*);
+const Table<ColorRequest>& fields_of(const ColorRequest*);
 const Table<MeasureRequest>& fields_of(const MeasureRequest*);
 const Table<ShapeRequest>& fields_of(const ShapeRequest*);
 const Table<PointRequest>& fields_of(const PointRequest*);
@@ -141,8 +154,8 @@ const Table<PingRequest>& fields_of(const PingRequest*);
 using Ask = std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, HaltRequest, ResetRequest,
                          WeightRequest, PushRequest, ReleaseRequest, RunRequest, SpeedRequest, CancelRequest,
                          OpenRequest, LiveRequest, BranchRequest, ExperimentRequest, CheckRequest,
-                         SaveRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest, MeasureRequest,
-                         ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
+                         SaveRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest, ColorRequest,
+                         MeasureRequest, ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
 
 /// The request in one message, or the reason why the message is invalid.
 struct Request {

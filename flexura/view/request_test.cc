@@ -62,6 +62,8 @@ TEST(Request, ReadsEverythingThatAPageCanAsk) {
       read_as_ask<MeasureRequest>(R"({"id":7,"do":"measure","camera":"a","layers":["axis"]})");
   EXPECT_EQ(measure.layers->at(0), "axis");
   EXPECT_FALSE(read_as_ask<MeasureRequest>(R"({"id":7,"do":"measure","camera":"a"})").layers);
+  EXPECT_FALSE(read_as_ask<MeasureRequest>(R"({"id":7,"do":"measure","camera":"a"})").seeing);
+  EXPECT_EQ(read_as_ask<ColorRequest>(R"({"id":7,"do":"color","camera":"a","u":3,"v":4})").v, 4);
   (void)read_as_ask<ShapeRequest>(R"({"id":7,"do":"shape"})");
   EXPECT_EQ(read_as_ask<PointRequest>(R"({"id":7,"do":"point","s":0.5})").s, 0.5);
   EXPECT_TRUE(read_as_ask<BackboneRequest>(R"({"id":7,"do":"backbone","bends":[[0,1]]})").bends);

@@ -123,6 +123,49 @@ TEST_F(MeasuredArm, LiesUnderItsLayers) {
   EXPECT_EQ(few.result.find("layers")->as<Node::Array>()->size(), 1);
 }
 
+// The chosen region and colour replace those of the experiment in this request only.
+TEST_F(MeasuredArm, IsSearchedWhereTheClientSays) {
+  MeasureRequest request{"front", {{"axis"}}};
+  const auto top = [&] {
+    double least = 1e9;
+    for (const Eigen::Vector2d& point : points_of(*layers_of(ask(request), "axis").at(0)))
+      least = std::min(least, point.y());
+    return least;
+  };
+  const double whole = top();
+  request.seeing.emplace().region = {{0, 240}, {639, 479}};
+  EXPECT_GT(top(), 235) << "the lower half only";
+  request.seeing->region = {{0, 240}, {639, 240}, {639, 479}, {0, 479}};
+  EXPECT_GT(top(), 235);
+  request.seeing->region = {{1000, 1000}, {2000, 2000}};
+  const ViewAnswer outside = ask(request);
+  EXPECT_EQ(outside.error, "");
+  EXPECT_THAT(*outside.result.find("reason")->as<std::string>(), HasSubstr("the region has fewer"));
+  request.seeing.reset();
+  EXPECT_EQ(top(), whole) << "nothing is kept";
+  EXPECT_EQ(ask(ColorRequest{"front", 320, 240}).error, "");
+  EXPECT_THAT(ask(ColorRequest{"side", 320, 240}).error, HasSubstr("gray"));
+  ShapeRequest shape;
+  shape.seeing.resize(1);
+  shape.seeing[0].camera = "front";
+  shape.seeing[0].region = {{1000, 1000}, {2000, 2000}};
+  EXPECT_THAT(write_json(*ask(shape).result.find("notes")), HasSubstr("camera front: the region has fewer"));
+  shape.seeing[0].camera = "back";
+  EXPECT_THAT(ask(shape).error, HasSubstr("there is no camera with this name"));
+}
+
+TEST_F(MeasuredArm, HasAMaskWithinTheRegion) {
+  MeasureRequest request{"front", {{"mask"}}};
+  const auto rows = [&] {
+    return layers_of(ask(request), "mask").at(0)->find("rows")->as<Node::Array>()->size();
+  };
+  const std::size_t whole = rows();
+  request.seeing.emplace().region = {{0, 240}, {639, 479}};
+  EXPECT_LT(rows(), whole);
+  const Node::Array all = *layers_of(ask(request), "mask").at(0)->find("rows")->as<Node::Array>();
+  for (const Node& row : all) EXPECT_GE(*row.as<Node::Array>()->at(0).as<std::int64_t>(), 240);
+}
+
 // Bent in a plane parallel to the front camera's image.
 TEST_F(MeasuredArm, LiesOnTheCircleThatItsArcIs) {
   ask(bends({{-0.8, 0}, {-0.8, 0}}));

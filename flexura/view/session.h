@@ -28,7 +28,7 @@ using Reply = std::function<void(ViewAnswer)>;
 
 /// Content of the message `hello` (docs/viewer-protocol.md) for a session.
 struct Hello {
-  std::string mode;  ///< "live" or "recording".
+  std::string mode;  ///< "live", "recording" or "pictures".
   std::string title;
   Node scene;
   Node controls;

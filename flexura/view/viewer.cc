@@ -78,6 +78,9 @@ Viewer::Viewer(ViewStart start, Messenger& messenger, Background& background, do
     recording_ = std::make_unique<RecordingSession>(start_.recording, messenger_, background_);
     start_.rig = start_.recording->rig();
     shown_ = recording_.get();
+  } else if (!start_.pictures.empty()) {
+    files_ = std::make_unique<FileSession>(start_.pictures, messenger_, background_);
+    shown_ = files_.get();
   } else {
     go_live([](const ViewAnswer&) {});
   }
@@ -124,7 +127,10 @@ void Viewer::on_message(ClientId client, const std::string& message_text,
 
 void Viewer::take(ClientId client, const Request& request, const std::shared_ptr<const void>& debt) {
   Reply reply = request.id ? reply_to(client, *request.id, debt) : [](const ViewAnswer&) {};
-  if (const auto* const open = std::get_if<OpenRequest>(&request.ask)) {
+  if (files_ != nullptr) {
+    if (std::holds_alternative<AckRequest>(request.ask)) reply = [](const ViewAnswer&) {};
+    files_->take(client, request.ask, std::move(reply));
+  } else if (const auto* const open = std::get_if<OpenRequest>(&request.ask)) {
     if (open->example) {
       open_example(*open->example, reply);
     } else {
@@ -146,7 +152,9 @@ void Viewer::take(ClientId client, const Request& request, const std::shared_ptr
   }
 }
 
-bool Viewer::has_rig() const { return start_.run == nullptr || live_ == nullptr || !live_->is_over(); }
+bool Viewer::has_rig() const {
+  return files_ == nullptr && (start_.run == nullptr || live_ == nullptr || !live_->is_over());
+}
 
 bool Viewer::has_recording() const { return recording_ != nullptr || (live_ != nullptr && live_->results()); }
 
@@ -330,7 +338,8 @@ void Viewer::advance(double now) {
   clock_ = now;
   shown_->advance(now);
   if (campaign_ != nullptr) campaign_->advance(now);
-  if (shown_ != live_.get() || !live_->is_over() || is_opening_ || !live_->results()) return;
+  if (live_ == nullptr || shown_ != live_.get() || !live_->is_over() || is_opening_ || !live_->results())
+    return;
   open(*live_->results(), [](const ViewAnswer&) {});
 }
 

@@ -11,6 +11,7 @@
 
 #include "flexura/view/background.h"
 #include "flexura/view/campaign_watcher.h"
+#include "flexura/view/file_session.h"
 #include "flexura/view/live_session.h"
 #include "flexura/view/messenger.h"
 #include "flexura/view/recording_session.h"
@@ -27,10 +28,10 @@ struct ViewExample {
   std::string text = {};               ///< Text of the experiment.
 };
 
-/// Initial content of a viewer: a recording or a rig.
+/// Initial content of a viewer: a recording, a rig or pictures.
 struct ViewStart {
   std::string session;                 ///< Identifier that is different at every start of the program.
-  ViewedRigPtr rig = {};               ///< The rig; null only if there is a recording.
+  ViewedRigPtr rig = {};               ///< The rig; null only if there is a recording or there are pictures.
   RecordingPtr recording = {};         ///< The recording; may be null.
   std::filesystem::path results = {};  ///< Folder for the results of task runs; default: results/view.
   std::shared_ptr<RunLink> run = {};  ///< An active run. After the run's end, the viewer opens its recording.
@@ -41,6 +42,8 @@ struct ViewStart {
   std::filesystem::path folder = {};    ///< Folder for saved experiments.
   std::string stem = "experiment";      ///< Beginning of the names of saved experiments.
   std::filesystem::path campaign = {};  ///< Results of a campaign, whose progress is shown; "": none.
+  /// Picture files to show; empty: there is a recording or a rig.
+  std::vector<ViewedPicture> pictures = {};
 };
 
 /// Parses the requests of clients, answers them, and switches between rig and recording. Not thread-safe.
@@ -86,7 +89,7 @@ class Viewer {
   void replace_rig(ViewedRigPtr rig, std::filesystem::path results, std::string text, const Reply& reply);
   void open(const std::filesystem::path& folder, Reply reply);
   void go_live(const Reply& reply);
-  /// Returns whether there is a live rig; false after the end of a watched run.
+  /// Returns whether there is a live rig; false for pictures, and after the end of a watched run.
   [[nodiscard]] bool has_rig() const;
   [[nodiscard]] bool has_recording() const;
   void show(Session& session);
@@ -99,7 +102,8 @@ class Viewer {
   std::map<ClientId, std::string> failures_;     // Last failure reported to each client.
   std::unique_ptr<LiveSession> live_;            // May be null if a recording was opened first.
   std::unique_ptr<RecordingSession> recording_;  // The last opened recording; may be null.
-  Session* shown_ = nullptr;                     // Points to *live_ or *recording_.
+  std::unique_ptr<FileSession> files_;           // Null unless picture files are shown.
+  Session* shown_ = nullptr;                     // Points to *live_, *recording_ or *files_.
   std::unique_ptr<CampaignWatcher> campaign_;    // Null without a campaign.
   bool is_opening_ = false;
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);

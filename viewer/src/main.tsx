@@ -9,6 +9,7 @@ import './ui/experiment.css';
 import './scene/stage.css';
 import './panels/panels.css';
 import './panels/cameras.css';
+import './panels/finder.css';
 import './plots/plots.css';
 import './timeline/timeline.css';
 import './teach/teach.css';
@@ -36,7 +37,7 @@ const come_in = (with_token: string | null): boolean => {
   return true;
 };
 const app = make_app(viewer, new KeyMap({
-  enabled: (binding) => preferences.keys.value && is_in_sight(binding, app.route.value),
+  enabled: (binding) => preferences.keys.value && is_in_sight(binding, app.route.value, viewer.hello.value?.mode !== 'pictures'),
 }));
 app.keys.add(...bindings_of(app));
 app.use_token = (text) => come_in(pasted_token(text));

@@ -2,29 +2,13 @@
 // themes, as small PNG files. Needs a build, and a machine that does nothing else.
 import { writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import type { Page } from 'playwright-core';
 import { launch, open_page, slide, until } from '../test/e2e/browser';
 import { Program, program } from '../test/e2e/program';
-import { palette_png } from './palette_png';
+import { palette_png, pixels_of } from './palette_png';
 
 const root = fileURLToPath(new URL('../../', import.meta.url));
 const folder = process.argv[2] ?? `${root}docs/images`;
 if (!program) throw new Error('FLEXURA_PROGRAM names the program: there is none');
-
-/** Returns the pixels of a PNG file, RGBA. */
-async function pixels_of(page: Page, png: Buffer): Promise<Uint8Array> {
-  const text = await page.evaluate(async (base64) => {
-    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-    const image = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
-    const context = new OffscreenCanvas(image.width, image.height).getContext('2d')!;
-    context.drawImage(image, 0, 0);
-    const { data } = context.getImageData(0, 0, image.width, image.height);
-    let out = '';
-    for (let i = 0; i < data.length; i += 8192) out += String.fromCharCode(...data.subarray(i, i + 8192));
-    return btoa(out);
-  }, png.toString('base64'));
-  return Buffer.from(text, 'base64');
-}
 
 const browser = await launch();
 const served = new Program(`${root}examples/03_cameras/experiment.toml`);

@@ -1,5 +1,6 @@
 // Small PNG files: few colours, chosen by median cut.
 import { deflateSync } from 'node:zlib';
+import type { Page } from 'playwright-core';
 import { chunk } from '../test/fake/picture';
 
 interface Box {
@@ -60,4 +61,19 @@ export function palette_png(pixels: Uint8Array, width: number, height: number, m
     Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]),
     chunk('IHDR', head), chunk('PLTE', colors), chunk('IDAT', deflateSync(rows, { level: 9 })), chunk('IEND', Buffer.alloc(0)),
   ]);
+}
+
+/** Returns the pixels of a PNG file, RGBA. */
+export async function pixels_of(page: Page, png: Buffer): Promise<Uint8Array> {
+  const text = await page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+    const context = new OffscreenCanvas(image.width, image.height).getContext('2d')!;
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    let out = '';
+    for (let i = 0; i < data.length; i += 8192) out += String.fromCharCode(...data.subarray(i, i + 8192));
+    return btoa(out);
+  }, png.toString('base64'));
+  return Buffer.from(text, 'base64');
 }

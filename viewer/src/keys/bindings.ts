@@ -11,8 +11,8 @@ export function bindings_of(app: App): Binding[] {
 /**
  * Returns whether a key is active on the shown page: rig keys only work on the viewer's page, where the rig is visible.
  */
-export function is_in_sight({ group }: Binding, route: App['route']['value']): boolean {
-  return route === 'viewer' || group === 'Page';
+export function is_in_sight({ group }: Binding, route: App['route']['value'], has_rig = true): boolean {
+  return (route === 'viewer' && has_rig) || group === 'Page';
 }
 
 function time({ viewer: { playback } }: App): Binding[] {
@@ -120,6 +120,7 @@ function page(app: App): Binding[] {
 
 function escape(app: App): void {
   if (app.dialog.value) app.dialog.value = null;
+  else if (app.viewer.finding.value !== null && app.enlarged.value === app.viewer.finding.value) app.viewer.finding.value = null;
   else if (app.enlarged.value !== null) app.enlarged.value = null;
   else if (app.route.value !== 'viewer') return;
   else if (app.push_tool.value) app.push_tool.value = false;

@@ -3,8 +3,11 @@ import type { ShapeResult } from '../protocol/types';
 import { preferences, toggle_overlay } from '../state/preferences';
 import { use_app } from '../ui/app';
 
-/** Selection of the measures drawn on the pictures, and the shape estimated from all of them. */
-export function MeasurePanel({ cameras }: { cameras: number }) {
+/**
+ * Selection of the measures drawn on the pictures, and the shape estimated from all of them. `always` is drawn in any
+ * case.
+ */
+export function MeasurePanel({ cameras, always }: { cameras: number; always?: string }) {
   const { viewer } = use_app();
   const wanted = preferences.overlays.value;
   const all: Measure[] = cameras > 1 ? [...measures, shape] : measures;
@@ -12,7 +15,7 @@ export function MeasurePanel({ cameras }: { cameras: number }) {
     <div class="measures">
       <div class="chips" role="group" aria-label="Measured in the pictures">
         {all.map(({ id, label, title, color }) => (
-          <button key={id} type="button" class="chip" aria-pressed={wanted.includes(id)} title={title}
+          <button key={id} type="button" class="chip" aria-pressed={wanted.includes(id) || id === always} title={title}
             aria-label={`${label}: ${title}`} onClick={() => toggle_overlay(id)}>
             <span class="swatch" style={{ background: color }} />{label}
           </button>

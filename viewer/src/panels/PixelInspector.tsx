@@ -22,6 +22,7 @@ export function PixelInspector({ pixel }: { pixel: Signal<Pixel | null> }) {
   }), []);
   const at = pixel.value;
   const exact = result.value;
+  const is_file = viewer.hello.value?.mode === 'pictures';
   const places = viewer.scene.value ? length_places(total_length(viewer.scene.value.arm)) : 3;
   return (
     <section class="pixel" aria-label="Pixel inspector">
@@ -29,8 +30,8 @@ export function PixelInspector({ pixel }: { pixel: Signal<Pixel | null> }) {
       <dl>
         <div><dt>Pixel</dt><dd>{at ? `${at.camera} (${at.u}, ${at.v})` : 'point at a picture'}</dd></div>
         <div><dt>Value</dt><dd>{exact ? `${exact.value.join(', ')} of ${2 ** exact.bits - 1}` : '–'}</dd></div>
-        <div><dt>Is</dt><dd>{what_is(exact, places)}</dd></div>
-        <div><dt>Depth</dt><dd>{exact && exact.depth !== null ? `${fixed(exact.depth, places)} m` : '–'}</dd></div>
+        {!is_file && <div><dt>Is</dt><dd>{what_is(exact, places)}</dd></div>}
+        {!is_file && <div><dt>Depth</dt><dd>{exact && exact.depth !== null ? `${fixed(exact.depth, places)} m` : '–'}</dd></div>}
       </dl>
     </section>
   );

@@ -6,6 +6,16 @@ export type Pose = [number, number, number, number, number, number, number];
 export type Range = [number, number];
 export type Level = 'info' | 'warning' | 'error';
 
+/** A pixel, [u, v]. */
+export type Corner = [number, number];
+
+/** What separates the arm from its surroundings in a picture. Two corners are a rectangle. */
+export interface SeeingChoice {
+  region?: Corner[];
+  color?: Vector3;
+  base?: Corner;
+}
+
 export interface SceneSection {
   length: number;
   radius: Range;
@@ -68,6 +78,8 @@ export interface SceneCamera {
   width: number;
   height: number;
   channels: 1 | 3;
+  /** What the experiment says about the arm in the pictures; the background is a file's name. */
+  seeing?: { region?: Corner[]; color?: Vector3; background?: string };
 }
 
 export interface Scene {
@@ -159,11 +171,14 @@ export interface Quantity {
   group?: string;
 }
 
+/** A live rig, a recording of a run, or picture files without a rig. */
+export type Mode = 'live' | 'recording' | 'pictures';
+
 export interface Hello {
   type: 'hello';
   version: string;
   session: string;
-  mode: 'live' | 'recording';
+  mode: Mode;
   title: string;
   scene: Scene;
   controls: Controls;
@@ -361,6 +376,12 @@ export interface ShapeResult {
   bends?: [number, number][];
   sigma?: number;
   rms_px?: number;
+}
+
+/** Red, green and blue of the arm at a pixel, from 0 to 255. */
+export interface ColorResult {
+  color: Vector3;
+  number: number;
 }
 
 export interface PixelResult {

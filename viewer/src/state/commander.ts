@@ -6,6 +6,7 @@ import type { ExperimentText, TextProblem, TipResult, Vector3 } from '../protoco
 import type { Notices } from './notices';
 import type { Playback } from './playback';
 import { preferences } from './preferences';
+import type { Seeing } from './seeing';
 
 export type ArmCommand = Record<string, unknown>;
 
@@ -27,7 +28,10 @@ export class Commander {
   private is_tip_led = false;
   private readonly axes = new Map<string, Latest<Record<string, unknown>>>();
 
-  constructor(private readonly link: Link, private readonly notices: Notices, private readonly playback: Playback) {
+  constructor(
+    private readonly link: Link, private readonly notices: Notices, private readonly playback: Playback,
+    private readonly seeing?: Pick<Seeing, 'all_sent'>,
+  ) {
     const told = (_: unknown, error: Error | null): void => {
       if (error) notices.error(error);
     };
@@ -120,7 +124,8 @@ export class Commander {
     this.playback.go_live();
     this.forget_tip();
     const speed = preferences.run_speed.value;
-    return this.ask('run', task === undefined ? { speed } : { task, speed });
+    const seeing = this.seeing?.all_sent() ?? [];
+    return this.ask('run', { ...(task !== undefined && { task }), speed, ...(seeing.length > 0 && { seeing }) });
   }
 
   /** Tasks play so fast from now on: those that run, too. */

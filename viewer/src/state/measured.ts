@@ -2,7 +2,8 @@
 import { effect, signal, type ReadonlySignal, type Signal } from '@preact/signals';
 import { Latest } from '../connection/latest';
 import { shape as shape_measure } from '../overlays/measures';
-import type { MeasureResult, ShapeResult } from '../protocol/types';
+import type { MeasureResult, SeeingChoice, ShapeResult } from '../protocol/types';
+import type { Seeing } from './seeing';
 
 /** The part of `Viewer` that is needed. */
 export interface MeasureHost {
@@ -65,7 +66,10 @@ export class Measured {
   readonly shape = signal<ShapeResult | null>(null);
 
   /** `wanted`: the measures to display. Returns a function that stops the requests. */
-  start(host: MeasureHost, wanted: ReadonlySignal<string[]>): () => void {
+  start(
+    host: MeasureHost, wanted: ReadonlySignal<string[]>,
+    seeing: Pick<Seeing, 'sent_of' | 'all_sent'> = { sent_of: () => undefined, all_sent: () => [] }, finding: ReadonlySignal<string | null> = signal(null),
+  ): () => void {
     let stops: (() => void)[] = [];
     const end = (): void => stops.forEach((stop) => stop());
     const numbers = (cameras: string[]): string | null => {
@@ -78,20 +82,31 @@ export class Measured {
       const cameras = host.scene.value?.cameras.map(({ name }) => name) ?? [];
       end();
       this.pictures.value = Object.fromEntries(cameras.map((name) => [name, signal(null)]));
-      const of_layers = (): string[] => wanted.value.filter((id) => id !== shape_measure.id);
+      // Whoever says where the arm is sees its axis.
+      const of_layers = (camera: string): string[] => {
+        const layers = wanted.value.filter((id) => id !== shape_measure.id);
+        return finding.value === camera && !layers.includes('axis') ? [...layers, 'axis'] : layers;
+      };
+      const chosen = (camera: string): { seeing?: SeeingChoice } => {
+        const choice = seeing.sent_of(camera);
+        return choice ? { seeing: choice } : {};
+      };
       stops = cameras.map((camera) => follow(
         this.pictures.peek()[camera],
-        () => host.link.request<MeasureResult>('measure', { camera, layers: of_layers() }),
+        () => host.link.request<MeasureResult>('measure', { camera, layers: of_layers(camera), ...chosen(camera) }),
         () => {
-          const [layers, picture] = [of_layers(), numbers([camera])];
-          return layers.length && picture ? `${picture} ${layers.join()}` : null;
+          const [layers, picture] = [of_layers(camera), numbers([camera])];
+          return layers.length && picture ? `${picture} ${layers.join()} ${JSON.stringify(chosen(camera))}` : null;
         },
         picture_grace_ms,
       ));
       stops.push(follow(
         this.shape,
-        () => host.link.request<ShapeResult>('shape', {}),
-        () => (wanted.value.includes(shape_measure.id) && cameras.length > 1 ? numbers(cameras) : null),
+        () => host.link.request<ShapeResult>('shape', seeing.all_sent().length ? { seeing: seeing.all_sent() } : {}),
+        () => {
+          const pictures = wanted.value.includes(shape_measure.id) && cameras.length > 1 ? numbers(cameras) : null;
+          return pictures && `${pictures} ${JSON.stringify(seeing.all_sent())}`;
+        },
         grace_ms,
       ));
     });

@@ -3,6 +3,7 @@
 import { computed, signal } from '@preact/signals';
 import { Latest } from '../connection/latest';
 import type { State } from '../protocol/state';
+import type { Mode } from '../protocol/types';
 import type { History } from './history';
 
 export interface PlaybackHost {
@@ -17,7 +18,7 @@ export const speeds = [0.1, 0.25, 0.5, 1, 2, 4, 8];
 const live_step_s = 1 / 60;
 
 export class Playback {
-  readonly mode = signal<'live' | 'recording'>('live');
+  readonly mode = signal<Mode>('live');
   readonly duration = signal(0);
   /** Step of time, s: for a recording the time between two of its states. */
   step_s = live_step_s;
@@ -42,7 +43,7 @@ export class Playback {
   }
 
   /** Starts at the beginning of another run or rig. */
-  start(mode: 'live' | 'recording', duration: number, interval: number): void {
+  start(mode: Mode, duration: number, interval: number): void {
     this.pause();
     this.asker.forget();
     this.mode.value = mode;
@@ -65,6 +66,7 @@ export class Playback {
 
   play(): void {
     if (this.mode.value === 'live') return this.go_live();
+    if (this.mode.value === 'pictures') return;
     if (this.time.value >= this.duration.value) this.time.value = 0;
     this.playing.value = true;
     this.before = performance.now();
@@ -90,6 +92,7 @@ export class Playback {
   /** Seeks to a time; live times are limited to the remembered ones. */
   seek(time: number): void {
     if (this.mode.value === 'live') return this.hold(time);
+    if (this.mode.value === 'pictures') return;
     this.time.value = Math.min(this.duration.value, Math.max(0, time));
     this.asker.ask(this.time.value);
   }

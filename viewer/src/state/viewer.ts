@@ -13,12 +13,13 @@ import { Measured } from './measured';
 import { Notices } from './notices';
 import { Playback } from './playback';
 import { preferences } from './preferences';
+import { Seeing } from './seeing';
 import { extra_ghosts, extra_overlay, OverlayMemory } from '../overlays/extras';
 import { shape } from '../overlays/measures';
 import { capital } from '../ui/format';
 
 /** Up-to-dateness of the shown state. */
-export type Freshness = 'live' | 'held' | 'recording' | 'stale' | 'lost' | 'none' | 'refused';
+export type Freshness = 'live' | 'held' | 'recording' | 'pictures' | 'stale' | 'lost' | 'none' | 'refused';
 
 const kept_events = 200;
 /** Update interval of the panels, ms; the 3D view gets every state. */
@@ -37,6 +38,9 @@ export class Viewer implements LinkListener {
   readonly commander: Commander;
   readonly pictures: Pictures;
   readonly measured = new Measured();
+  readonly seeing = new Seeing();
+  /** The camera in whose pictures the user says where the arm is; null: none. */
+  readonly finding = signal<string | null>(null);
 
   readonly hello = signal<Hello | null>(null);
   readonly scene = signal<Scene | null>(null);
@@ -86,14 +90,14 @@ export class Viewer implements LinkListener {
       show: (state) => this.show(state),
       failed: (error) => this.notices.error(error),
     });
-    this.commander = new Commander(this.link, this.notices, this.playback);
-    this.measured.start(this, preferences.overlays);
+    this.commander = new Commander(this.link, this.notices, this.playback, this.seeing);
+    this.measured.start(this, preferences.overlays, this.seeing, this.finding);
     setInterval(() => this.watch_states(), 500);
   }
 
   get readonly(): boolean {
     const hello = this.hello.value;
-    return !hello || hello.readonly || hello.mode === 'recording';
+    return !hello || hello.readonly || hello.mode !== 'live';
   }
 
   /** The shown state may be outdated, so the effect of a command would not be visible. */
@@ -172,6 +176,7 @@ export class Viewer implements LinkListener {
     const afresh = !before || before.session !== hello.session || before.mode !== hello.mode
       || before.title !== hello.title || before.duration !== hello.duration;
     this.hello.value = hello;
+    this.seeing.take(hello.scene.cameras, `${hello.session} ${hello.title}`);
     this.scene.value = hello.scene;
     if (before && before.session !== hello.session) {
       this.notices.info('The program was started again.');
@@ -204,6 +209,7 @@ export class Viewer implements LinkListener {
     this.overlay_memory.take(null);
     this.shown_extras.value = null;
     this.picked.value = null;
+    this.finding.value = null;
     this.commander.forget_tip();
     this.pictures.reset();
     for (const { bitmap } of this.picture_of.values()) bitmap.close();
@@ -314,7 +320,7 @@ export class Viewer implements LinkListener {
     if (!this.hello.value) return link.kind === 'refused' ? 'refused' : 'none';
     if (link.kind !== 'open') return 'lost';
     if (!this.link.fresh.value || this.stateless.value) return 'stale';
-    if (this.hello.value.mode === 'recording') return 'recording';
+    if (this.hello.value.mode !== 'live') return this.hello.value.mode;
     return this.playback.held.value === null ? 'live' : 'held';
   }
 }

@@ -9,6 +9,7 @@ import { Icon } from './Icon';
 const badges = {
   live: ['LIVE', 'The current state is shown.'],
   held: ['HELD', 'The view is held at an earlier time; the rig keeps running.'],
+  pictures: ['PICTURES', 'Picture files: there is no rig.'],
   recording: ['RECORDING', 'Recording: the rig cannot be moved.'],
   stale: ['STALE', 'No new data: the shown state is outdated.'],
   lost: ['NO CONNECTION', 'Connection lost: the shown state is outdated.'],
@@ -37,14 +38,14 @@ export function Header() {
       )}
       {!teaching && (viewer.flags.value & flag_pace) !== 0 && <Pace />}
       <span class="spacer" />
-      {!teaching && hello && <Rig />}
+      {!teaching && hello && hello.mode !== 'pictures' && <Rig />}
       <nav class="tools" aria-label="Page">
         {!teaching && (hello?.examples?.length ?? 0) > 0 && (
           <button type="button" class="button quiet" title="Opens an example" onClick={() => (app.dialog.value = 'examples')}>
             <Icon name="folder" />Examples
           </button>
         )}
-        {!teaching && hello && (
+        {!teaching && hello && hello.mode !== 'pictures' && (
           <button type="button" class="button quiet square" aria-label="Experiment" title="The text of the experiment: edit it, save it as a new file"
             disabled={viewer.link.status.value.kind !== 'open'} onClick={() => edit_experiment(app)}><Icon name="text" /></button>
         )}

@@ -15,13 +15,14 @@ import { Header } from './Header';
 import { Help } from './Help';
 import { Hints } from './Hints';
 import { NoticeList } from './NoticeList';
+import { PictureBench } from './PictureBench';
 
 export function Page() {
   const app = use_app();
   return (
     <>
       <Header />
-      {app.route.value === 'teach' ? <Teach /> : <Bench />}
+      {app.route.value === 'teach' ? <Teach /> : app.viewer.hello.value?.mode === 'pictures' ? <PictureBench /> : <Bench />}
       <NoticeList />
       <Help />
       <Examples />

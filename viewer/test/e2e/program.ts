@@ -46,6 +46,15 @@ export class Program {
     return results;
   }
 
+  /** Renders a camera's picture of an experiment at a time, s. Returns the file. */
+  render(file: string, camera: string, time: number): string {
+    const picture = join(this.folder, 'arm.png');
+    const words = ['render', file, '--camera', camera, '--time', String(time), '--out', picture];
+    const ended = spawnSync(program!, words, { stdio: ['ignore', 'ignore', 'inherit'] });
+    if (ended.status !== 0) throw new Error(`render ended with ${ended.status}`);
+    return picture;
+  }
+
   async end(): Promise<void> {
     const { child } = this;
     if (!child || child.exitCode !== null) return;

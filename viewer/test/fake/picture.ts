@@ -23,14 +23,15 @@ export function chunk(type: string, data: Buffer): Buffer {
   return out;
 }
 
-/** Encodes a grey PNG. */
-export function encode_png(width: number, height: number, pixels: Uint8Array): Buffer {
+/** Encodes a PNG: grey, or with three channels in colour. */
+export function encode_png(width: number, height: number, pixels: Uint8Array, channels: 1 | 3 = 1): Buffer {
   const head = Buffer.alloc(13);
   head.writeUInt32BE(width, 0);
   head.writeUInt32BE(height, 4);
-  head.set([8, 0, 0, 0, 0], 8);
-  const rows = Buffer.alloc((width + 1) * height);
-  for (let v = 0; v < height; ++v) rows.set(pixels.subarray(v * width, (v + 1) * width), v * (width + 1) + 1);
+  head.set([8, channels === 1 ? 0 : 2, 0, 0, 0], 8);
+  const line = width * channels;
+  const rows = Buffer.alloc((line + 1) * height);
+  for (let v = 0; v < height; ++v) rows.set(pixels.subarray(v * line, (v + 1) * line), v * (line + 1) + 1);
   return Buffer.concat([
     Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]),
     chunk('IHDR', head),

@@ -1,6 +1,7 @@
 // Replies of the fake rig to each request of the protocol.
 import { cord_angles_of, archings_of } from '../../src/math/planar';
 import { point_at } from '../../src/math/arc';
+import type { Corner, SeeingChoice } from '../../src/protocol/types';
 import type { Bends } from './arm';
 import type { PointInPicture } from './picture';
 import type { FakeSession } from './session';
@@ -74,6 +75,12 @@ function layers_of({ pixels, points }: SentPicture, width: number): { id: string
   ];
 }
 
+/** Returns whether a point is within the bounds of a region. */
+function is_between({ u, v }: PointInPicture, region: Corner[]): boolean {
+  const [us, vs] = [region.map(([x]) => x), region.map(([, y]) => y)];
+  return u >= Math.min(...us) && u <= Math.max(...us) && v >= Math.min(...vs) && v <= Math.max(...vs);
+}
+
 const handlers: Record<string, (hub: Hub, request: Request, client: Client) => Answer | void> = {
   arm: ({ session }, request) => session.arm.command(bends_of(session, request), request.stretches as number[] | undefined),
   tip: ({ session }, request) => {
@@ -143,10 +150,17 @@ const handlers: Record<string, (hub: Hub, request: Request, client: Client) => A
     const sent = client.sent.get(request.camera as string);
     if (!sent) throw new Error('no picture was sent yet');
     const wanted = request.layers as string[];
+    const { region } = (request.seeing ?? {}) as SeeingChoice;
+    const shown = region ? { ...sent, points: sent.points.filter((point) => is_between(point, region)) } : sent;
+    if (!shown.points.length) return { found: false, reason: 'the region shows no arm', notes: [], number: sent.number, layers: [] };
     return {
       found: true, reason: '', notes: [], number: sent.number,
-      layers: layers_of(sent, width).filter(({ id }) => wanted.includes(id)),
+      layers: layers_of(shown, width).filter(({ id }) => wanted.includes(id)),
     };
+  },
+  color: ({ session }, request) => {
+    if (session.rig.scene.cameras[camera_of(session, request)].channels === 1) throw new Error('the picture is gray and has no colour');
+    return { color: [52, 52, 52], number: 0 };
   },
   shape: ({ session }, _, client) => {
     const rows = Array.from(session.arm.samples());

@@ -13,6 +13,8 @@ let done: string[];
 let mode: 'live' | 'recording';
 let is_elastic: boolean;
 const push_tool = signal(false);
+const enlarged = signal<string | null>(null);
+const finding = signal<string | null>(null);
 
 /** Returns an object that records all calls with their arguments. */
 function noted(name: string, has: Record<string, unknown> = {}): object {
@@ -39,13 +41,13 @@ function place(): void {
 function press(key: string): void {
   const app = {
     viewer: {
-      playback: noted('time', { mode: signal(mode) }), commander: noted('rig'), picked: signal(0.25), readonly: false, blind: false,
+      playback: noted('time', { mode: signal(mode) }), commander: noted('rig'), picked: signal(0.25), readonly: false, blind: false, finding,
       hello: signal({ controls: is_elastic ? { push: {} } : {} }),
     },
     views: noted('views', { current: signal(null) }),
     view: signal(noted('view', { orbit, camera, state: { samples: new Float32Array(7) } })),
     dialog: signal(null),
-    enlarged: signal(null),
+    enlarged,
     route: signal('viewer'),
     push_tool,
   } as unknown as App;
@@ -134,6 +136,14 @@ test('an elastic arm is pushed by dragging, until Escape', () => {
   press('g');
   press('g');
   expect(push_tool.value).toBe(false);
+});
+
+test('Escape closes the tools of a picture first, then the picture', () => {
+  enlarged.value = finding.value = 'front';
+  press('Escape');
+  expect([enlarged.value, finding.value]).toEqual(['front', null]);
+  press('Escape');
+  expect(enlarged.value).toBeNull();
 });
 
 test('the end of a recording is its last state', () => {

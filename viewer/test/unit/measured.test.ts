@@ -1,6 +1,7 @@
 import { signal } from '@preact/signals';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { picture_grace_ms, Measured } from '../../src/state/measured';
+import { Seeing } from '../../src/state/seeing';
 
 interface Asked {
   what: string;
@@ -24,9 +25,11 @@ function made(cameras = ['front', 'side'], wanted: string[] = ['axis']) {
   };
   const overlays = signal(wanted);
   const measured = new Measured();
-  const stop = measured.start(host, overlays);
+  const seeing = new Seeing();
+  const finding = signal<string | null>(null);
+  const stop = measured.start(host, overlays, seeing, finding);
   return {
-    host, overlays, measured, waiting, stop,
+    seeing, finding, host, overlays, measured, waiting, stop,
     show: (camera: string, number: number): void => {
       picture_of.set(camera, { number });
       host.picture_tick.value++;
@@ -111,4 +114,26 @@ test('the shape needs the pictures of both cameras', async () => {
   const alone = made(['front'], ['shape']);
   alone.show('front', 1);
   expect(alone.waiting).toHaveLength(0);
+});
+
+test('a changed region is measured at once, in the same picture', async () => {
+  const { show, waiting, answer, seeing, of } = made(['front', 'side'], ['axis', 'shape']);
+  show('front', 1);
+  show('side', 1);
+  await answer({ number: 1 });
+  seeing.set('front', { region: [[0, 0], [9, 9]] });
+  const asked = waiting.filter(({ what }) => what === 'measure');
+  expect(asked.at(-1)!.values).toEqual({ camera: 'front', layers: ['axis'], seeing: { region: [[0, 0], [9, 9]] } });
+  for (const one of waiting.splice(0)) one.resolve({ found: false, reason: 'nothing', notes: [], number: 1, layers: [] });
+  await vi.advanceTimersByTimeAsync(0);
+  expect(of('front')?.reason).toBe('nothing');
+  expect(waiting.filter(({ what }) => what === 'shape').map(({ values }) => values)).toEqual([{ seeing: [{ camera: 'front', region: [[0, 0], [9, 9]] }] }]);
+});
+
+test('whoever says where the arm is sees its axis', () => {
+  const { show, waiting, finding } = made(['front'], []);
+  show('front', 1);
+  expect(waiting).toHaveLength(0);
+  finding.value = 'front';
+  expect(waiting.map(({ values }) => values)).toEqual([{ camera: 'front', layers: ['axis'] }]);
 });

@@ -51,6 +51,25 @@ TEST_F(LiveSessionTest, RunsTheTasksIntoANewFolder) {
   EXPECT_EQ(*progress.find("outcome")->as<std::string>(), "done");
 }
 
+// The settings are in the results, so the run can be repeated.
+TEST_F(LiveSessionTest, RunsTasksWithTheRegionThatAClientDrew) {
+  RunRequest run;
+  run.speed = 0;
+  run.seeing.resize(1);
+  run.seeing[0].camera = "back";
+  EXPECT_THAT(ask(run).error, HasSubstr("there is no camera with this name"));
+  run.seeing[0].camera = "front";
+  run.seeing[0].region = {{3, 4}, {50, 60}};
+  const ViewAnswer answer = ask(run);
+  ASSERT_EQ(answer.error, "");
+  const std::filesystem::path results = *answer.result.find("folder")->as<std::string>();
+  pass(0.1);
+  const std::string file = read_text_file(results / "experiment.toml", 1 << 20);
+  EXPECT_THAT(file, HasSubstr("seeing"));
+  EXPECT_THAT(file, HasSubstr("60"));
+  EXPECT_TRUE(rig_->experiment.seeing.empty()) << "the rig itself stays as it is";
+}
+
 TEST_F(LiveSessionTest, RunsOneTaskFromTheStart) {
   const ViewedRigPtr rig = viewed_rig(viewed_text + "[[task]]\nkind = \"hold\"\nduration = 0.5\n");
   LiveSession session(rig, messenger_, background_, {.start = 0, .results = folder_.path() / "one"});

@@ -46,10 +46,10 @@ export class Program {
     return results;
   }
 
-  /** Renders a camera's picture of an experiment at a time, s. Returns the file. */
-  render(file: string, camera: string, time: number): string {
+  /** Renders a camera's picture of an experiment with other values at a time, s. Returns the file. */
+  render(file: string, camera: string, time: number, values: string[] = []): string {
     const picture = join(this.folder, 'arm.png');
-    const words = ['render', file, '--camera', camera, '--time', String(time), '--out', picture];
+    const words = ['render', file, '--camera', camera, '--time', String(time), '--out', picture, ...values.flatMap((value) => ['--set', value])];
     const ended = spawnSync(program!, words, { stdio: ['ignore', 'ignore', 'inherit'] });
     if (ended.status !== 0) throw new Error(`render ended with ${ended.status}`);
     return picture;

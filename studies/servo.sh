@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 samples=${1:-}             # For each row of the tables; default: as in the campaign files.
-calibrated=${2:-$samples} # For each row of the tables whose runs begin with a calibration.
+calibrated=${2:-$samples} # For each row of the tables whose runs begin with a calibration; 0: omit these tables.
 page=docs/studies/servo.md
 build=${FLEXURA_STUDY_BUILD:-build/release}
 
@@ -33,7 +33,11 @@ END
   echo
   export FLEXURA_STUDY_BUILD=$build
   tools/study_page.sh 20_servo_study "$samples" wrong learned near turned sagging
-  tools/study_page.sh 20_servo_study "$calibrated" arcs rods calibrated
+  if [ "$calibrated" = 0 ]; then
+    echo "The tables of servos after a calibration (\`arcs\`, \`rods\`, \`calibrated\`) are omitted."
+  else
+    tools/study_page.sh 20_servo_study "$calibrated" arcs rods calibrated
+  fi
 } >build/studies/servo.md
 mv build/studies/servo.md "$page"
 echo "wrote $page"

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# servos of an arm to random shapes by each law: ./dev study servo [SAMPLES]
+# servos of an arm to random shapes by each law: ./dev study servo [SAMPLES] [CALIBRATED]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-samples=${1:-} # For each row of the tables; default: as in the campaign files.
+samples=${1:-}             # For each row of the tables; default: as in the campaign files.
+calibrated=${2:-$samples} # For each row of the tables whose runs begin with a calibration; 0: omit these tables.
 page=docs/studies/servo.md
 build=${FLEXURA_STUDY_BUILD:-build/release}
 
@@ -25,12 +26,18 @@ In this study, servos move a simulated arm in view of two cameras to random shap
 
 END
   echo '```console'
-  echo "\$ ./dev study servo${samples:+ $samples}"
+  echo "\$ ./dev study servo${samples:+ $samples}${2:+ $2}"
   echo '```'
   echo
   echo "The results are from commit $(git rev-parse --short HEAD)."
   echo
-  FLEXURA_STUDY_BUILD=$build tools/study_page.sh 20_servo_study "$samples" wrong learned near calibrated turned sagging arcs rods
+  export FLEXURA_STUDY_BUILD=$build
+  tools/study_page.sh 20_servo_study "$samples" wrong learned near turned sagging
+  if [ "$calibrated" = 0 ]; then
+    echo "The tables of servos after a calibration (\`arcs\`, \`rods\`, \`calibrated\`) are omitted."
+  else
+    tools/study_page.sh 20_servo_study "$calibrated" arcs rods calibrated
+  fi
 } >build/studies/servo.md
 mv build/studies/servo.md "$page"
 echo "wrote $page"

@@ -93,7 +93,8 @@ TEST_F(ViewerOfACampaign, FollowsTheRows) {
   EXPECT_EQ(*progress().find("statuses")->find("failed")->as<std::int64_t>(), 1);
   EXPECT_EQ(number("rate"), 5);
   EXPECT_EQ(number("left"), 11);
-  const Node& height = progress().find("measures")->as<Node::Array>()->front();
+  const Node message = progress();
+  const Node& height = message.find("measures")->as<Node::Array>()->front();
   EXPECT_EQ(*height.find("name")->as<std::string>(), "height");
   EXPECT_EQ(*height.find("high")->as<double>(), 0.04);
   add_rows(9);

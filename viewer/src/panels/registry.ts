@@ -18,7 +18,7 @@ export interface Tab {
 
 /** The tabs on the left. A new panel needs one line here and one file. */
 export const left_tabs: Tab[] = [
-  { id: 'campaign', label: 'Campaign', title: 'Progress and results of the campaign', Panel: CampaignPanel, shown: (hello) => hello?.campaign === true },
+  { id: 'campaign', label: 'Runs', title: 'Progress and results of the campaign’s runs', Panel: CampaignPanel, shown: (hello) => hello?.campaign === true },
   { id: 'arm', label: 'Arm', title: 'The arm’s shape and its tip', Panel: ArmPanel },
   { id: 'forces', label: 'Forces', title: 'What pushes the arm, its energies and contacts', Panel: ForcePanel, shown: has_forces },
   { id: 'cameras', label: 'Cameras', title: 'Pan, tilt, zoom and stage of each camera', Panel: CameraPanel },

@@ -207,7 +207,8 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
     print_result(experiment, result, out);
   }
   out.flush();
-  link->finish({name_of(result.outcome), result.reasons.empty() ? "" : result.reasons.front(), folder});
+  link->finish(
+      {name_of(result.outcome), result.reasons.empty() ? result.headline : result.reasons.front(), folder});
   if (watched) watched->wait();
   if (result.outcome == RunOutcome::cancelled && unwatched)
     return exit_of_signal(unwatched->received_signal());

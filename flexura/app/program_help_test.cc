@@ -107,17 +107,7 @@ TEST_F(Program, AnswersTheExamplesOfItsHelp) {
   }
 }
 
-TEST(TimeLeft, IsInProportionToWhatIsDone) {
-  TimeLeft left;
-  EXPECT_EQ(left.at(0.01, 5), std::nullopt) << "too little is done";
-  EXPECT_EQ(left.at(0.5, 0.5), std::nullopt) << "too early";
-  EXPECT_DOUBLE_EQ(left.at(0.5, 10).value(), 10);
-  EXPECT_DOUBLE_EQ(left.at(0.75, 15).value(), 5);
-  EXPECT_EQ(left.at(0.0, 20), std::nullopt) << "the next part of the job";
-  EXPECT_DOUBLE_EQ(left.at(0.1, 22).value(), 18);
-}
-
-TEST(TimeLeft, IsShownInUnitsForPeople) {
+TEST(DurationText, HasUnitsForPeople) {
   EXPECT_EQ(duration_text(11.2), "12 s");
   EXPECT_EQ(duration_text(200), "3 min 20 s");
   EXPECT_EQ(duration_text(7500), "2 h 5 min");

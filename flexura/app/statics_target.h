@@ -30,7 +30,7 @@ struct StaticsTarget {
   std::optional<std::vector<StaticsPoint>> shape;  ///< Target positions of points along the arm.
   double most_tension = 1000;                      ///< Largest tension of each tendon, N.
 
-  /// Returns the target as a RodTarget. `rod` must have the positions places() as nodes.
+  /// Returns the target as a RodTarget. `rod` must have a node at each position of places().
   [[nodiscard]] RodTarget target(const Rod& rod) const;
   /// Returns the positions along the rod of the points of `shape`.
   [[nodiscard]] std::vector<RodPlace> places(const Rod& rod) const;

@@ -11,19 +11,6 @@
 
 namespace flexura {
 
-std::optional<double> TimeLeft::at(double fraction, double elapsed) {
-  if (fraction < last_fraction_) {
-    begin_elapsed_ = elapsed;
-    begin_fraction_ = fraction;
-  }
-  last_fraction_ = fraction;
-  const double done = fraction - begin_fraction_;
-  const double took = elapsed - begin_elapsed_;
-  // Too early, the estimate would jump.
-  if (done < 0.02 || took < 1) return std::nullopt;
-  return took * (1 - fraction) / done;
-}
-
 std::string duration_text(double seconds) {
   const auto whole = static_cast<long>(std::ceil(seconds));
   if (whole < 60) return fmt::format("{} s", whole);

@@ -7,10 +7,10 @@
 
 namespace flexura {
 
-/// Largest number of pixels of a picture in which the search for a board starts, and goes on.
+/// Largest number of pixels of a picture in which the search for a board starts, and in which it continues.
 inline constexpr double first_search_pixels = 1.4e6, last_search_pixels = 5.6e6;
 
-/// Reduced copies of a picture, each half as wide and high as the one before. The first is the picture.
+/// Reduced copies of a picture, each half as wide and high as the one before. The first is the original.
 [[nodiscard]] std::vector<cv::Mat> reduced_pictures(const cv::Mat& picture);
 
 /// Search for the points of a board with OpenCV, with a bound on its work.

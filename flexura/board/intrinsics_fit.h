@@ -48,7 +48,7 @@ struct CameraFit {
   double corner_sigma = 0;
   /// Indices of undetermined intrinsics. An intrinsic parameter is undetermined if a change by one standard
   /// deviation moves observed points by more than 1 % of the image's diagonal. If corner_sigma exceeds this
-  /// distance, a parameter that moves the image's corners that far is undetermined too. The error of observed
+  /// distance, a parameter that moves the corners by over 1 % is also undetermined. The error of observed
   /// pixels is assumed to be at least 0.05 px.
   std::vector<int> undetermined;
 

@@ -67,7 +67,7 @@ class ZoomTable {
   /// numbers.
   [[nodiscard]] double first() const { return first_; }
   [[nodiscard]] double last() const { return last_; }
-  /// Returns whether the zoom is linear: the table has no rows.
+  /// Returns whether the zoom is linear, which means that the table has no rows.
   [[nodiscard]] bool is_linear() const { return curves_.empty(); }
 
   /// Returns the intrinsics at the position `zoom`. Positions that are beyond first() or last() because of

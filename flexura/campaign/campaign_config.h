@@ -47,7 +47,7 @@ struct CampaignConfig {
   std::string title;
   std::string description;       ///< Text about the campaign in its report; Markdown.
   std::string experiment;        ///< The experiment file, relative to the campaign file.
-  std::vector<std::string> set;  ///< Changes of the experiment, "path=value", equal in all runs.
+  std::vector<std::string> set;  ///< Changes to the experiment, "path=value", the same in all runs.
   std::int64_t seed = 1;
   Sampling sampling = Sampling::random;
   std::int64_t samples = 1;  ///< Samples of the distributions, for each combination of grids and lists.

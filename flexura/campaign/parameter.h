@@ -48,12 +48,12 @@ struct GridParameter : ParameterPlace {
 /// Given numbers, combined with the values of other grids and lists.
 struct ListParameter : ParameterPlace {
   std::vector<double> values;
-  bool drawn = false;  ///< Each sample draws one of the values; they are not combined.
+  bool drawn = false;  ///< Whether a sample draws one value; otherwise all are combined.
 };
 /// Given values of any type, combined with the values of other grids and lists.
 struct ChoiceParameter : ParameterPlace {
   std::vector<std::string> choices;  ///< Each as the VALUE of `--set PATH=VALUE`.
-  bool drawn = false;                ///< Each sample draws one of the choices; they are not combined.
+  bool drawn = false;                ///< Whether a sample draws one choice; otherwise all are combined.
 };
 
 /// A parameter of a campaign.

@@ -74,7 +74,7 @@ std::vector<std::string> PotentialLaw::violations() const {
                                 least_eigenvalue(K)));
   if (has_lengths_ && gains_.length_damping <= 0)
     found.push_back(
-        fmt::format("the damping of variable lengths is not positive: it is {:.3g}", gains_.length_damping));
+        fmt::format("the damping of section lengths is not positive: it is {:.3g}", gains_.length_damping));
   if (gains_.gravity_share != 1)
     found.push_back(fmt::format("{:.3g} % of gravity is compensated, not 100 %", 100 * gains_.gravity_share));
   if (gains_.elasticity == ElasticityRule::ignored)

@@ -38,7 +38,7 @@ RodState RodDynamics::pick_up(const RodState& state, const RodPayload& payload, 
   constexpr double most = 1e100;  // Inertia and energy of larger numbers are not finite.
   if (!(payload.mass >= 0) || !(payload.mass < most) || !(payload.offset.norm() < most) ||
       !(payload.velocity.norm() < most))
-    throw std::invalid_argument("a payload must have a mass of at least 0 and finite numbers");
+    throw std::invalid_argument("the numbers of a payload must be finite, and its mass must be at least 0");
   Work& work = *work_;
   if (state.q.size() != work.chain.size() || !state.q.allFinite() || !state.momentum.allFinite())
     throw std::invalid_argument("the state belongs to another rod, or is not finite");

@@ -37,7 +37,7 @@ class DeviceClock {
   /// Adds an answer: the device's time `device`, s, is between the rig's times `earliest` and `latest`, s.
   /// `earliest` is minus infinity if unknown. Returns false and ignores the answer if a number is not finite
   /// or the answer contradicts the known bounds. After the third consecutive contradiction, the device's
-  /// clock counts as reset, and contradicting bounds are discarded.
+  /// clock counts as reset, and the bounds that the answer contradicts are discarded.
   bool add(double device, double earliest, double latest);
 
   /// Returns whether rig_time() has enough answers for a result.

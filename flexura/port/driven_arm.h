@@ -44,7 +44,7 @@ class DrivenArm : public ArmPort {
   Outcome<ArmReading> read() override;
 
   /// Pulls in each tendon by a displacement, m, with compensation of backlash and friction, regardless of
-  /// the resulting shape. `duration`, s, is as for command(). The command is refused unless there is one
+  /// the resulting shape. `duration`, s: see command(). The command is refused unless there is one
   /// finite displacement per tendon that is not too large in microsteps.
   CommandOutcome pull(const std::vector<double>& displacements, double duration);
 

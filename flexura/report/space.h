@@ -32,7 +32,7 @@ struct ReportSpace {
     std::optional<Backbone> shape = {};            ///< Shape of the arm at the target.
     std::optional<Eigen::Vector3d> position = {};  ///< Target of the tip in W, m.
   };
-  /// The true arm at a time: points at equal fractions of the arm's length, including base and tip, in W, m.
+  /// The true arm at a time: evenly spaced points of the arm, including base and tip, in W, m.
   struct TrueArm {
     double time = 0;  ///< In s.
     std::vector<Eigen::Vector3d> points;

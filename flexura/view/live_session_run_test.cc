@@ -49,6 +49,7 @@ TEST_F(LiveSessionTest, RunsTheTasksIntoANewFolder) {
   const Node progress = messenger_.last(me, "progress");
   EXPECT_TRUE(*progress.find("done")->as<bool>());
   EXPECT_EQ(*progress.find("outcome")->as<std::string>(), "done");
+  EXPECT_THAT(*progress.find("text")->as<std::string>(), HasSubstr("done")) << "what came of the run";
 }
 
 // The settings are in the results, so the run can be repeated.
@@ -265,6 +266,10 @@ TEST_F(LiveSessionTest, ShowsARunThatSomebodyElseStarted) {
   EXPECT_EQ(messenger_.state(other).time, 7.25);
   EXPECT_NEAR(messenger_.state(other).arm.bends[1].y(), 0.4, 1e-6);
   EXPECT_EQ(*messenger_.last(other, "progress").find("fraction")->as<double>(), 0.5);
+  EXPECT_TRUE(messenger_.last(other, "progress").find("left")->empty()) << "not known yet";
+  run->update(0.75, "bend");
+  watched.advance(109.1);
+  EXPECT_NEAR(*messenger_.last(other, "progress").find("left")->as<double>(), 3, 1e-9);
   EXPECT_THROW(watched.take(other, bends({{0, 0}, {0, 0}}), [](const ViewAnswer&) {}), ViewRefusal);
   EXPECT_THROW(watched.take(other, CancelRequest{}, [](const ViewAnswer&) {}), ViewRefusal);
   EXPECT_THROW(watched.take(other, HaltRequest{}, [](const ViewAnswer&) {}), ViewRefusal);

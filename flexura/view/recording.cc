@@ -140,6 +140,8 @@ void Recording::read_summary() {
     const auto* first = lines == nullptr || lines->empty() ? nullptr : lines->front().as<std::string>();
     if (first != nullptr) end_.text = *first;
   }
+  const Node* line = summary.find("headline");
+  if (const auto* headline = line == nullptr ? nullptr : line->as<std::string>()) headline_ = *headline;
   mark_violations(summary);
 }
 

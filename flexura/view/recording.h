@@ -51,6 +51,8 @@ class Recording {
   /// Returns the run's condition at a time, s. The condition is `unsafe` while a limit is violated, and
   /// otherwise `running`. At the end, the result is the condition in the results file.
   [[nodiscard]] Conditioned condition(double time) const;
+  /// Returns the result of the run in one line, as in its summary; "" if the summary has none.
+  [[nodiscard]] const std::string& headline() const { return headline_; }
 
   /// Returns how many images of a camera the log has.
   [[nodiscard]] std::size_t images(std::size_t camera) const { return images_.at(camera).size(); }
@@ -139,6 +141,7 @@ class Recording {
   Entries decisions_;                                                   // Decisions of calibrations.
   double servo_interval_ = 0;  // Interval between commands of a servo, s.
   std::vector<Mark> marks_;
+  std::string headline_;
   Conditioned end_ = {Condition::halted, "the results do not say how the run ended"};
 };
 

@@ -107,6 +107,7 @@ Hello RecordingSession::hello() const {
   hello.interval = recording_->interval();
   hello.marks = recording_->marks();
   hello.quantities = SeriesTable::quantities(*recording_);
+  hello.headline = recording_->headline();
   hello.report = has_report(*recording_);
   hello.readonly = true;
   return hello;

@@ -212,7 +212,7 @@ void run_linked(const Experiment& experiment, const std::filesystem::path& folde
     });
     end.outcome = name_of(result.outcome);
     end.folder = folder;
-    if (!result.reasons.empty()) end.text = result.reasons.front();
+    end.text = result.reasons.empty() ? result.headline : result.reasons.front();
   } catch (const std::exception& error) {
     end.text = error.what();
   }

@@ -32,7 +32,7 @@ class RunLink : public Progress, public RunWatcher {
   /// How a run ended.
   struct End {
     std::string outcome;           ///< "done", "unsafe", "cancelled" or "failed".
-    std::string text;              ///< Reason, one line; may be "".
+    std::string text;              ///< Reason, or the result of a run that is done, in one line; may be "".
     std::filesystem::path folder;  ///< Folder with the results; "" if the run has no results.
   };
   /// A logged event.

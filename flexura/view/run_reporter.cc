@@ -14,6 +14,7 @@ namespace flexura {
 void RunReporter::begin() {
   reported_fraction_ = reported_at_ = drawn_at_ = -1;
   reported_what_.clear();
+  time_left_ = {}, began_.reset();
   measured_.clear();
   changes_ = 0, are_extras_known_ = true;
 }
@@ -52,10 +53,13 @@ void RunReporter::report_progress(const RunLink::News& news, double clock,
   const bool has_moved = std::abs(news.fraction - reported_fraction_) >= to_be_seen;
   const bool reports_more = news.what != reported_what_ && clock - reported_at_ >= between;
   if (!has_moved && !reports_more) return;
+  if (!began_) began_ = clock;
+  const std::optional<double> left = time_left_.at(news.fraction, clock - *began_);
   reported_fraction_ = news.fraction, reported_what_ = news.what, reported_at_ = clock;
   send({Node::Table{{"type", {}, text_node("progress")},
                     {"what", {}, text_node(news.what)},
-                    {"fraction", {}, {news.fraction, {}}}},
+                    {"fraction", {}, {news.fraction, {}}},
+                    {"left", {}, left ? Node{*left, {}} : Node{}}},
         {}},
        clients);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flexura/base/node.h"
+#include "flexura/base/time_left.h"
 #include "flexura/view/messenger.h"
 #include "flexura/view/run_link.h"
 #include "flexura/view/viewed_rig.h"
@@ -41,7 +42,9 @@ class RunReporter {
   Messenger& messenger_;
   double reported_fraction_ = -1;
   std::string reported_what_;
-  double reported_at_ = -1;  // Time of the clock at the last progress report, s.
+  TimeLeft time_left_;
+  std::optional<double> began_;  // Time of the clock at the first report of the run, s.
+  double reported_at_ = -1;      // Time of the clock at the last progress report, s.
   std::vector<RunLink::Measured> measured_;
   bool are_extras_known_ = true;
   std::uint64_t changes_ = 0;

@@ -36,6 +36,7 @@ struct Hello {
   double interval = 0;  ///< Typical interval between two states of a recording, s.
   std::vector<Mark> marks;
   std::vector<Quantity> quantities;
+  std::string headline;  ///< Result of a recorded run in one line; may be "".
   bool report = false;
   bool readonly = false;
   /// Speed of a run that was started outside the session, relative to real time.

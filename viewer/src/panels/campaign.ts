@@ -1,18 +1,6 @@
 // Texts about a campaign.
 import type { CampaignMessage } from '../protocol/types';
-
-/** Returns a duration in its two largest units. */
-export function duration_text(seconds: number): string {
-  const units: [string, number][] = [['d', 86400], ['h', 3600], ['min', 60], ['s', 1]];
-  const whole = Math.ceil(seconds);
-  const first = units.findIndex(([, size]) => whole >= size);
-  if (first < 0) return '0 s';
-  const [name, size] = units[first];
-  const text = `${Math.floor(whole / size)} ${name}`;
-  const next = units[first + 1];
-  const rest = next ? Math.floor((whole % size) / next[1]) : 0;
-  return rest ? `${text} ${rest} ${next![0]}` : text;
-}
+import { duration_text } from '../ui/format';
 
 export function number_text(value: number): string {
   return String(Number(value.toPrecision(3))).replace('-', '−');

@@ -187,6 +187,8 @@ export interface Hello {
   interval: number;
   marks: Mark[];
   quantities: Quantity[];
+  /** Result of a recorded run in one line; may be "". */
+  headline?: string;
   report: boolean;
   /** The progress of a campaign follows in messages `campaign`; the report is that of the campaign. */
   campaign?: boolean;
@@ -217,6 +219,8 @@ export interface ProgressMessage {
   type: 'progress';
   what?: string;
   fraction?: number;
+  /** Time left, s; null if it is not known yet. */
+  left?: number | null;
   done?: boolean;
   outcome?: Outcome;
   /** When done: there is a recording of the run. */

@@ -3,7 +3,7 @@ import { flag_pace, flag_weightless } from '../protocol/state';
 import { preferences, theme_now, toggle_theme } from '../state/preferences';
 import { edit_experiment, use_app } from './app';
 import { ConditionBadge } from './ConditionBadge';
-import { fixed, format_time } from './format';
+import { duration_text, fixed, format_time } from './format';
 import { Icon } from './Icon';
 
 const badges = {
@@ -129,6 +129,7 @@ function Rig() {
     const instant = viewer.shown?.time ?? 0;
     return (
       <div class="tools">
+        {hello.headline && <span class="headline" title={hello.headline}>{hello.headline}</span>}
         <button type="button" class="button" disabled={!connected} onClick={() => void viewer.commander.branch(viewer.shown?.time ?? 0)}
           title={`Opens a live rig that starts in the shown state, ${format_time(instant)}: the arm as commanded and the cameras, at rest. The recording stays.`}>
           <Icon name="run" />Start here
@@ -151,6 +152,7 @@ function Rig() {
       {running && (
         <span class="running">
           <span class="running-text" title={progress.what}>{progress.what}</span>
+          {typeof progress.left === 'number' && <span class="running-left" title="Estimated from the progress so far">{`${duration_text(progress.left)} left`}</span>}
           <progress max={1} value={progress.fraction ?? 0} aria-label="Progress of the tasks" />
           <button type="button" class="button" disabled={!connected || viewer.readonly} onClick={ask('cancel')}
             title={viewer.readonly ? 'Only the terminal that started the run can end it' : 'The run ends early (C)'}>

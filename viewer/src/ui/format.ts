@@ -8,6 +8,19 @@ export function format_time(seconds: number): string {
   return minutes ? `${sign}${minutes}:${rest}` : `${sign}${rest} s`;
 }
 
+/** Returns a duration in its two largest units. */
+export function duration_text(seconds: number): string {
+  const units: [string, number][] = [['d', 86400], ['h', 3600], ['min', 60], ['s', 1]];
+  const whole = Math.ceil(seconds);
+  const first = units.findIndex(([, size]) => whole >= size);
+  if (first < 0) return '0 s';
+  const [name, size] = units[first];
+  const text = `${Math.floor(whole / size)} ${name}`;
+  const next = units[first + 1];
+  const rest = next ? Math.floor((whole % size) / next[1]) : 0;
+  return rest ? `${text} ${rest} ${next![0]}` : text;
+}
+
 /** Formats a number with `places` decimals and a real minus sign. */
 export function fixed(value: number, places: number): string {
   if (!Number.isFinite(value)) return '–';

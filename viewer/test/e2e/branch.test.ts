@@ -21,6 +21,10 @@ describe.skipIf(!program)('a recording', () => {
   const bends = async () => Object.values((await shown()).bends);
   const is_at = async (wanted: number[]) => (await bends()).every((value, i) => Math.abs(value - wanted[i]) < 1e-3);
 
+  test('says first what came of the run', async () => {
+    expect(await page.locator('.headline').textContent()).toBe('2 of 2 motions done');
+  });
+
   test('is continued from the shown instant', async () => {
     await slide(page, '#scrub', 2);
     await until(async () => Math.abs((await shown()).time - 2) < 0.1);
@@ -50,6 +54,7 @@ describe.skipIf(!program)('a recording', () => {
     await page.waitForSelector('.badge[data-kind="live"]');
     await page.getByRole('button', { name: 'Run tasks' }).click();
     await page.waitForSelector('.badge[data-kind="done"]');
+    await page.getByText('2 of 2 motions done').first().waitFor();
     await until(() => is_at([-0.4, 0.2, 0.2, 0.4]));
     expect(opened.complaints).toEqual([]);
   });

@@ -1,5 +1,6 @@
 import { expect, test } from 'vitest';
-import { campaign_state, duration_text } from '../../src/panels/campaign';
+import { campaign_state } from '../../src/panels/campaign';
+import { duration_text } from '../../src/ui/format';
 import type { CampaignMessage } from '../../src/protocol/types';
 
 test.each([

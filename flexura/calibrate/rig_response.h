@@ -35,7 +35,7 @@ class RigResponse {
   [[nodiscard]] std::string name(std::size_t input) const;
   /// Returns whether an input can differ from 0.
   [[nodiscard]] bool acts(std::size_t input) const { return input < sections_ || sags_; }
-  /// Returns the input `input` in a pose, multiplied by share(arc), rad.
+  /// Returns an input of an arc in a pose, multiplied by the arc's share, rad.
   [[nodiscard]] Eigen::Vector2d input(std::size_t pose, std::size_t arc, std::size_t input) const {
     const Eigen::Vector2d& whole = input < sections_ ? commands_[pose].bends[input] : sag_[section_of_[arc]];
     return shares_[arc] * whole;

@@ -40,7 +40,7 @@ struct ArmSetup {
 
   Arm arm;
   ArmState initial;            ///< Initial state.
-  std::optional<Drive> drive;  ///< Drive of the arm; missing: the sections bend within their own rate limits.
+  std::optional<Drive> drive;  ///< Drive of the arm; missing: the sections bend at their own rates.
   /// The rod of a static or dynamic arm; missing: sections are arcs.
   std::optional<ArmRod> rod;
 };

@@ -144,7 +144,7 @@ std::string truth_problem(const RigConfig& model, const RigConfig& truth) {
     return fmt::format("the true arm has {} tendons: expected {}, one per tendon of the drive",
                        truth.arm.tendon.size(), truth.drive->tendon.size());
   if (!std::ranges::equal(truth.cameras, model.cameras, {}, &CameraConfig::name, &CameraConfig::name))
-    return "expected the same camera names in the truth and in the model, in the same order";
+    return "expected equal camera names in the truth and in the model, in equal order";
   for (std::size_t i = 0; i < model.cameras.size(); ++i) {
     const SensorConfig &one = truth.cameras[i].sensor, &other = model.cameras[i].sensor;
     if (one.width != other.width || one.height != other.height || one.bits != other.bits ||

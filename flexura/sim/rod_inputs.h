@@ -69,7 +69,7 @@ class RodInputs {
   [[nodiscard]] std::vector<double> events(double start, double end) const;
   /// Returns the loads on the rod other than the tendons.
   [[nodiscard]] const RodLoads& loads(double time) const;
-  /// Returns whether the weight is switched on or off at a time in (start, end], s.
+  /// Returns whether the weight is switched at a time in (start, end], s.
   [[nodiscard]] bool is_weighed_anew(double start, double end) const;
   /// Returns whether any motor can lose steps.
   [[nodiscard]] bool may_lose_steps() const;

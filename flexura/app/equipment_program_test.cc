@@ -96,7 +96,8 @@ TEST_F(EquipmentProgram, IsStoppedByItsGuardWhenItHangs) {
   expect_rest(controller);
   kill(program, SIGCONT);
   const Ended ended = wait(program);
-  EXPECT_EQ(ended.status, 1) << "the run fails";
+  EXPECT_EQ(ended.status, 3);
+  EXPECT_THAT(ended.err, ::testing::HasSubstr("the watchdog stopped all devices"));
   expect_rest(controller);
 }
 
@@ -119,7 +120,7 @@ TEST_F(EquipmentProgram, StopsMotorsThatHome) {
       EXPECT_EQ(ended.err, "cancelled: stopped while the motors went to their first positions\n");
     }
     if (signal == SIGSTOP) {
-      EXPECT_EQ(ended.status, 1);
+      EXPECT_EQ(ended.status, 3);
       EXPECT_THAT(ended.err, ::testing::HasSubstr("the watchdog stopped all devices"));
     }
   }

@@ -142,11 +142,12 @@ TEST(ServoEnds, WhatIsGivenUpKeepsItsLastObservationsAndCommands) {
   }
 }
 
-// A ball at the target shape: the arm gets as near as allowed, and stops.
+// The middle of a ball is on the target shape: the arm gets as near as allowed, and stops.
 TEST(ServoEnds, AnObstacleHoldsTheArmBack) {
   ServoSetup rig;
   rig.rest = "[[obstacle]]\nname = \"ball\"\nkind = \"sphere\"\ncenter = [0.3, 0.75, 0]\nradius = 0.1\n";
-  ServoBench bench(servo_file("timeout = 1.5\n[[task.target]]\nbends = [[0.8, 0], [0.4, 0], [0, 0]]\n", rig));
+  ServoBench bench(
+      servo_file("timeout = 3\n[[task.target]]\nbends = [[0.31, 0], [0.31, 0], [0.31, 0]]\n", rig));
   ServoNotes notes;
   const ServoResult result = bench.servo(bench.ports(), notes);
   EXPECT_FALSE(result.is_done);

@@ -30,18 +30,12 @@ constexpr double between_reads = 0.005;  // s
 // the program hangs, and a stop by the user ends the wait for the device.
 class GuardedHoming {
  public:
-  GuardedHoming(WatchedLink& link, DeviceAccess& access) : link_(link), guard_(access.guard()) {
+  GuardedHoming(WatchedLink& link, DeviceAccess& access)
+      : link_(link), access_(access), guard_(access.guard()) {
     if (guard_ == nullptr) return;
     (void)guard_->beat(true);
-    link_.set_watch([this, &access]() -> std::optional<PortFault> {
-      if (!guard_->beat(true)) was_stopped_ = true;
-      if (was_stopped_)
-        return PortFault{
-            FaultKind::refused,
-            fmt::format("homing: the watchdog stopped all devices, because the program was silent "
-                        "for more than {:g} s",
-                        guard_->period())};
-      if (access.is_cancelled()) return PortFault{FaultKind::refused, "homing was cancelled"};
+    link_.set_watch([this]() -> std::optional<PortFault> {
+      if (is_stopped() || access_.is_cancelled()) return PortFault{FaultKind::refused, "homing was stopped"};
       return std::nullopt;
     });
   }
@@ -52,8 +46,27 @@ class GuardedHoming {
   GuardedHoming(const GuardedHoming&) = delete;
   GuardedHoming& operator=(const GuardedHoming&) = delete;
 
+  // Throws if the device is not home, with the cause.
+  void check(CommandOutcome homed) {
+    if (homed) return;
+    if (access_.is_cancelled()) throw HomingCancelled();
+    if (is_stopped())
+      throw std::runtime_error(fmt::format(
+          "homing: the watchdog stopped all devices, because the program was silent for more than "
+          "{:g} s",
+          guard_->period()));
+    value_or_throw(std::move(homed));
+  }
+
  private:
+  // Tells the guard that the program works. Returns whether the guard has stopped the devices.
+  bool is_stopped() {
+    if (guard_ != nullptr && !guard_->beat(true)) was_stopped_ = true;
+    return was_stopped_;
+  }
+
   WatchedLink& link_;
+  DeviceAccess& access_;
   Guard* guard_;
   bool was_stopped_ = false;
 };
@@ -100,10 +113,6 @@ bool succeeds(const Function& function) noexcept {
 ArmEquipment::ArmEquipment(const RigEquipment& equipment, const ArmSetup& setup, DeviceAccess& access)
     : equipment_(equipment), setup_(setup), access_(access) {
   if (!setup.drive) throw std::runtime_error("the arm has no drive to run");
-  const auto check_homed = [&access](CommandOutcome homed) {
-    if (!homed && access.is_cancelled()) throw HomingCancelled();
-    value_or_throw(std::move(homed));
-  };
   for (const std::int64_t position : nominal_positions(setup.arm, *setup.drive, setup.initial))
     rest_.push_back(static_cast<double>(position));
   const bool is_homed = equipment.start != StartPositions::declared;
@@ -115,8 +124,8 @@ ArmEquipment::ArmEquipment(const RigEquipment& equipment, const ArmSetup& setup,
     if (guard != nullptr) guard->protect(*link_, cia402_stop(*equipment.cia402));
     value_or_throw(can_->start());
     if (is_homed) {
-      const GuardedHoming homing(*link_, access);
-      check_homed(can_->home());
+      GuardedHoming homing(*link_, access);
+      homing.check(can_->home());
     } else {
       check_declared(value_or_throw(can_->read()).values);
     }
@@ -131,8 +140,8 @@ ArmEquipment::ArmEquipment(const RigEquipment& equipment, const ArmSetup& setup,
     value_or_throw(drive->connect());
     const auto own = std::span(is_homed ? equipment.home : rest_).subspan(first, drive->axes());
     if (is_homed) {
-      const GuardedHoming homing(link, access);
-      check_homed(drive->home(own));
+      GuardedHoming homing(link, access);
+      homing.check(drive->home(own));
     } else {
       value_or_throw(drive->set_positions(own));
     }

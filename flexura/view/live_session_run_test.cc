@@ -49,7 +49,8 @@ TEST_F(LiveSessionTest, RunsTheTasksIntoANewFolder) {
   const Node progress = messenger_.last(me, "progress");
   EXPECT_TRUE(*progress.find("done")->as<bool>());
   EXPECT_EQ(*progress.find("outcome")->as<std::string>(), "done");
-  EXPECT_THAT(*progress.find("text")->as<std::string>(), HasSubstr("done")) << "what came of the run";
+  EXPECT_THAT(*progress.find("text")->as<std::string>(), HasSubstr("at the target shape"))
+      << "what came of the run";
 }
 
 // The settings are in the results, so the run can be repeated.

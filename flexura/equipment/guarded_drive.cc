@@ -15,16 +15,19 @@ void GuardedDrive::beat() {
   if (keep_alive_) keep_alive_();
 }
 
+PortFault GuardedDrive::stopped() const {
+  return {FaultKind::refused,
+          fmt::format("the watchdog stopped all devices, because the program was silent for more than {:g} s "
+                      "while the arm moved",
+                      guard_.period())};
+}
+
 CommandOutcome GuardedDrive::command(std::span<const double> targets, double duration) {
   is_moving_ = true;
   beat();
   if (was_stopped_.exchange(false)) {
     is_moving_ = false;
-    return PortFault{
-        FaultKind::refused,
-        fmt::format("the watchdog stopped all devices, because the program was silent for more than "
-                    "{:g} s while the arm moved",
-                    guard_.period())};
+    return stopped();
   }
   CommandOutcome outcome = drive_.command(targets, duration);
   // A controller may move although its answer was lost.
@@ -42,6 +45,8 @@ Outcome<DriveReading> GuardedDrive::read() {
   beat();
   auto taken = drive_.read();
   beat();
+  // A stop makes some controllers lose their position: the stop is the cause to report.
+  if (!taken && was_stopped_) return stopped();
   if (!taken) return taken;
   DriveReading reading = std::move(taken).value();
   is_moving_ = reading.moving;

@@ -26,12 +26,16 @@ class GuardedDrive : public DrivePort {
   /// accepted again.
   CommandOutcome command(std::span<const double> targets, double duration) override;
   CommandOutcome halt() override;
+  /// If the drive does not answer after the watchdog has stopped the devices, the fault says so.
   Outcome<DriveReading> read() override;
 
   /// Sends the watchdog a sign of life.
   void beat();
 
  private:
+  // The fault after a stop by the watchdog.
+  [[nodiscard]] PortFault stopped() const;
+
   DrivePort& drive_;
   Watchdog& guard_;
   std::function<void()> keep_alive_;

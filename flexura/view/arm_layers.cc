@@ -121,10 +121,11 @@ struct DrawnAxis {
 
 DrawnAxis axis_of(const FoundArm& found, std::vector<std::string>& notes) {
   if (!found.view) return {found.arm.axis, found.arm.axis};
-  const BackboneAxis axis = backbone_axis(found.view->lens, found.arm.axis);
+  BackboneAxis axis = backbone_axis(found.view->lens, found.arm.axis);
   if (!axis.is_whole()) notes.emplace_back(middle_in_places);
   std::vector<AxisSample> known = axis.known();
-  return {axis.samples, known.empty() ? axis.samples : std::move(known)};
+  if (known.empty()) known = axis.samples;
+  return {std::move(axis.samples), std::move(known)};
 }
 
 // Adds the circle through the centerline, unless it is so large that it looks like a straight line.

@@ -135,8 +135,8 @@ bool ArmSearch::follow_expected(const Image<Value>& picture, double scale) {
   if (expected.is_empty() || is_part_) return false;
   expected.seeds(components_, width_, height_, seeds_);
   for (const TubeSeed& seed : seeds_) {
-    const auto u = static_cast<int>(seed.center.x() + 0.5), v = static_cast<int>(seed.center.y() + 0.5);
-    const Run* run = components_.run_at(u, v);
+    const Run* run = components_.run_at(static_cast<int>(std::lround(seed.center.x())),
+                                        static_cast<int>(std::lround(seed.center.y())));
     if (run == nullptr || components_.list[run->component].area < least_area) continue;
     followed_ = run->component;
     if (follow_from(picture, scale, components_.list[followed_], seed) && expected.agrees(seen.axis) &&

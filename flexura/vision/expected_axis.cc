@@ -22,14 +22,15 @@ constexpr double far_outside = 1e6;
 
 bool is_in_figure(const Components& components, const Vector2d& place) {
   return place.x() >= 0 && place.y() >= 0 &&
-         components.run_at(static_cast<int>(place.x() + 0.5), static_cast<int>(place.y() + 0.5)) != nullptr;
+         components.run_at(static_cast<int>(std::lround(place.x())),
+                           static_cast<int>(std::lround(place.y()))) != nullptr;
 }
 
 // Returns the place of a figure next to a point of the prediction, on a line across it.
 std::optional<Vector2d> place_near(const Components& components, const Vector2d& point,
                                    const Vector2d& normal) {
   for (int i = 0; i <= 2 * prediction_reach; ++i) {
-    const Vector2d place = point + (i % 2 == 0 ? i / 2 : -(i + 1) / 2) * normal;
+    Vector2d place = point + (i % 2 == 0 ? i / 2 : -(i + 1) / 2) * normal;
     if (is_in_figure(components, place)) return place;
   }
   return std::nullopt;

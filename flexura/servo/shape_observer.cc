@@ -165,7 +165,7 @@ ArmState ShapeObserver::predicted(double time) const {
 }
 
 std::optional<Shape> ShapeObserver::predicted_shape(double time) const {
-  if (!last_) return std::nullopt;
+  if (!last_ || tracker_.swing().is_tracked()) return std::nullopt;
   return Shape{last_->estimate.shape.arm, predicted(time), last_->estimate.shape.views};
 }
 

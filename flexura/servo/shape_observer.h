@@ -49,7 +49,9 @@ class ShapeObserver {
   /// Returns the predicted shape at `time`, s, with a covariance that bounds the search in pictures. Before
   /// the first observation, it is the model's shape for the drives' position.
   [[nodiscard]] ShapePrediction prediction(double time) const;
-  /// Returns the predicted shape at `time`, s; std::nullopt before the first observation.
+  /// Returns the predicted shape at `time`, s; std::nullopt before the first observation, and for an arm
+  /// whose oscillation is tracked: its pictures are searched without a prediction, so that disturbances are
+  /// found.
   [[nodiscard]] std::optional<Shape> predicted_shape(double time) const;
   /// Returns the expected equilibrium shape of the arm: the last estimate without oscillation, changed by the
   /// drives' motion since then. `driven`: the model's shape for the drives' position.

@@ -140,13 +140,22 @@ bool ArmSearch::follow_expected(const Image<Value>& picture, double scale) {
     if (run == nullptr || components_.list[run->component].area < least_area) continue;
     followed_ = run->component;
     if (follow_from(picture, scale, components_.list[followed_], seed) && expected.agrees(seen.axis) &&
-        has_width()) {
+        has_expected_ends() && has_width()) {
       for (AxisSample& sample : seen.axis) sample.sigma = std::max(sample.sigma, config.least_sigma);
       return true;
     }
   }
   seen.axis.clear();
   return false;
+}
+
+// Returns whether the ends of the arm that should be visible were found.
+bool ArmSearch::has_expected_ends() const {
+  const std::size_t base = expected.is_reversed(seen.axis) ? 1 : 0;
+  const auto is_as_expected = [&](std::size_t end) {
+    return !expected.shows_end(end) || seen.ends[end == 0 ? base : 1 - base].kind != AxisEndKind::lost;
+  };
+  return is_as_expected(0) && is_as_expected(1);
 }
 
 // Follows the figures in their order until one agrees with the settings; if none does, uses the first tube.

@@ -67,6 +67,7 @@ class ArmSearch {
   [[nodiscard]] std::string reason_against_following(double width) const;
 
   void order_figures();
+  [[nodiscard]] bool has_expected_ends() const;
   [[nodiscard]] bool has_width();
   [[nodiscard]] std::string contradiction();
   void reverse();

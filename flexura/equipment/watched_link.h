@@ -12,7 +12,7 @@
 namespace flexura {
 
 /// A link that calls a function before every read. Drivers read in short slices while they wait, so a watched
-/// link tells a guard that the program works during a long wait, and can end the wait.
+/// link can send a guard signs of life during a long wait, and can end the wait.
 class WatchedLink : public Link {
  public:
   /// Returns a fault that ends the wait; std::nullopt: the wait goes on.

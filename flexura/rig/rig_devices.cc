@@ -59,7 +59,7 @@ class GuardedHoming {
   }
 
  private:
-  // Tells the guard that the program works. Returns whether the guard has stopped the devices.
+  // Sends the guard a sign of life. Returns whether the guard has stopped the devices.
   bool is_stopped() {
     if (guard_ != nullptr && !guard_->beat(true)) was_stopped_ = true;
     return was_stopped_;

@@ -136,6 +136,29 @@ TEST_P(ViscaFramings, TheStopMessagesOfTheGuardStop) {
   EXPECT_EQ(bench.settle(), "");
 }
 
+// A program may die in the middle of a packet, with all sockets of the head in use.
+TEST_P(ViscaFramings, TheStopMessagesStopAHeadThatIsBusy) {
+  for (const bool is_cut : {false, true}) {
+    ViscaBench bench(visca_config(GetParam()));
+    ASSERT_EQ(bench.start(), "");
+    for (int i = 0; i < 3; ++i) {
+      ASSERT_EQ(bench.command({(90 + i) * degree, 60 * degree, 9.0 - i}), "");
+      bench.wire->pass(0.1);
+    }
+    ASSERT_TRUE(bench.device.is_moving(0, bench.wire->time));
+    if (is_cut) (void)bench.device.receive("\x81\x01\x06", bench.wire->time);
+    const StopMessages stop = visca_stop(bench.config);
+    for (const std::string& message : stop.first) (void)bench.device.receive(message, bench.wire->time);
+    bench.wire->pass(stop.delay);
+    for (const std::string& message : stop.then) (void)bench.device.receive(message, bench.wire->time);
+    const ViscaCounts resting = bench.device.counts(0, bench.wire->time);
+    for (int i = 0; i < 20; ++i) {
+      bench.wire->pass(0.2);
+      ASSERT_EQ(bench.device.counts(0, bench.wire->time), resting);
+    }
+  }
+}
+
 TEST_P(ViscaFramings, ASilentHeadIsLostAndFoundAgain) {
   ViscaBench bench(visca_config(GetParam()));
   ASSERT_EQ(bench.start(), "");

@@ -75,6 +75,10 @@ void ArmSearch::order_figures() {
 bool ArmSearch::ends_at_base() {
   if (!config.base || seen.is_closed || !is_base_visible()) return true;
   if (seen.contradicts) return false;
+  // A tube from the base to the picture's border may be a post under the arm.
+  if (config.cuts_at_base && cut_.empty() && seen.ends[1].kind == AxisEndKind::border &&
+      seen.covered < all_but_little)
+    return false;
   const double grace = std::max(20.0, median_width(seen.axis, widths_));
   return !cut_.empty() || (seen.ends[0].pixel - *config.base).norm() <= grace ||
          seen.covered >= all_but_little;

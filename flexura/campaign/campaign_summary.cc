@@ -140,6 +140,8 @@ CampaignSummary summary_of(CampaignResults& results) {
     summary.measures.push_back({one.label(), {}, {}, {}});
   std::map<std::string, std::size_t> kinds{{"", 0}};
   summary.reason_kinds = {""};
+  // Whether a measure has had a value that is no truth value. Truth values are stored as whole numbers.
+  std::vector<bool> is_number(config.measure.size());
   results.for_each([&](const CampaignRow& row) {
     summary.ids.push_back(row.id);
     summary.seconds += row.seconds;
@@ -150,19 +152,19 @@ CampaignSummary summary_of(CampaignResults& results) {
     for (std::size_t i = 0; i < row.parameters.size(); ++i) add(row.parameters[i], summary.parameters[i]);
     for (std::size_t i = 0; i < row.measures.size(); ++i) {
       add(row.measures[i], summary.measures[i]);
+      const auto* whole = row.measures[i].as<std::int64_t>();
+      if (row.measures[i].as<double>() != nullptr || (whole != nullptr && *whole != 0 && *whole != 1))
+        is_number[i] = true;
       summary.measures[i].successes.push_back(row.status == "done" &&
                                               is_success(config.measure[i], row.measures[i]));
     }
   });
   for (std::size_t i = 0; i < summary.measures.size(); ++i) {
     CampaignColumn& column = summary.measures[i];
-    const auto is_truth = [](double value) { return std::isnan(value) || value == 0 || value == 1; };
     const bool has_bounds = config.measure[i].min || config.measure[i].max;
     const bool has_values =
         !std::ranges::all_of(column.values, [](double value) { return std::isnan(value); });
-    if (!has_bounds &&
-        (!has_values || !column.categories.empty() || !std::ranges::all_of(column.values, is_truth)))
-      column.successes.clear();
+    if (!has_bounds && (!has_values || !column.categories.empty() || is_number[i])) column.successes.clear();
   }
   return summary;
 }

@@ -42,7 +42,8 @@ struct CampaignSummary {
 /// Largest number of faults of each status in a summary.
 inline constexpr std::int64_t most_faults = 5;
 
-/// Reads all rows. A measure has successes if it has bounds, or if all its values are 0 or 1.
+/// Reads all rows. A measure has successes if it has bounds, or if all its values are truth values, which are
+/// stored as the whole numbers 0 and 1.
 [[nodiscard]] CampaignSummary summary_of(CampaignResults& results);
 
 /// How a measure depends on a parameter.

@@ -55,6 +55,31 @@ TEST(CampaignWorstRuns, AreTheFarthestFromTheBounds) {
   EXPECT_THAT(worst_runs(without, {.key = "c", .name = {}, .min = {}, .max = {}}, 2), ElementsAre(1, 3));
 }
 
+// An error of 0 in each run is no "false".
+TEST(CampaignSummary, NumbersAreNoTruthValues) {
+  const CampaignFolder folder(std::string(bow_campaign_text) + "[[measure]]\nkey = \"time\"\n");
+  const Campaign campaign = folder.campaign({"samples=2"});
+  {
+    CampaignFile file(folder.path("a.db"), campaign);
+    std::vector<CampaignRow> rows;
+    for (std::int64_t id = 0; id < campaign.design().runs(); ++id)
+      rows.push_back({.id = id,
+                      .seed = campaign.design().seed(id),
+                      .parameters = campaign.design().values(id),
+                      .status = "done",
+                      .error = {},
+                      .measures = {{0.0, {}}, text_node("done"), {true, {}}, {0.0, {}}},
+                      .seconds = 1});
+    file.add(rows);
+  }
+  CampaignResults results(folder.path("a.db"));
+  const CampaignSummary summary = summary_of(results);
+  EXPECT_EQ(summary.measures[0].successes.size(), summary.ids.size()) << "it has a bound";
+  EXPECT_TRUE(summary.measures[1].successes.empty()) << "a text";
+  EXPECT_EQ(summary.measures[2].successes, std::vector<bool>(summary.ids.size(), true));
+  EXPECT_TRUE(summary.measures[3].successes.empty()) << "a number";
+}
+
 TEST(CampaignReport, EscapesTextsAndLoadsNothing) {
   const CampaignFolder folder(std::string("title = \"<b>&\"\n") + bow_campaign_text);
   const Campaign campaign = folder.campaign();

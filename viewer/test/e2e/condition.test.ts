@@ -30,6 +30,44 @@ describe.skipIf(!program)('the condition', () => {
     });
   });
 
+  describe('of a rig that is slow, and of tasks that harm it', () => {
+    const opened = opened_before(() => started(['view', file('unsafe.toml')]), 'live');
+
+    test('is moving, then idle; unsafe where a task violates a limit', async () => {
+      const { page, complaints } = opened;
+      const says = (word: string) => until(() => page.evaluate((wanted) => document.getElementById('condition')?.textContent === wanted, word), 8000, `not ${word}`);
+      await says('IDLE');
+      // At most half a radian per second.
+      const field = page.locator('.section').nth(1).locator('.number').first();
+      await field.fill('60');
+      await field.press('Enter');
+      await says('MOVING');
+      await says('IDLE');
+      await page.getByRole('button', { name: 'Run tasks' }).click();
+      await says('RUNNING');
+      await says('UNSAFE');
+      // Whoever stops it there leaves it there.
+      await page.keyboard.press('h');
+      await until(() => page.getByRole('button', { name: 'Run tasks' }).isEnabled());
+      expect(await page.locator('#condition').textContent()).toBe('UNSAFE');
+      await page.getByRole('button', { name: 'Reset' }).click();
+      await says('IDLE');
+      expect(complaints).toEqual([]);
+    });
+  });
+
+  describe('of tasks that fail', () => {
+    const opened = opened_before(() => started(['view', file('failing.toml')]), 'live');
+
+    test('is failed, with the reason', async () => {
+      const { page, complaints } = opened;
+      await page.getByRole('button', { name: 'Run tasks' }).click();
+      await until(() => page.evaluate(() => document.getElementById('condition')?.textContent === 'FAILED'), 15000, 'not FAILED');
+      expect(await page.locator('#condition').getAttribute('title')).toMatch(/^The tasks failed\. hurry: saturated: section 1: bend rate/);
+      expect(complaints).toEqual([]);
+    });
+  });
+
   describe('of a recorded run', () => {
     const opened = opened_before(() => recorded(file('unsafe.toml'), 1), 'recording');
 

@@ -148,6 +148,11 @@ TEST_F(ExportPng, HasEachImageOfTheLogForItsTime) {
   EXPECT_EQ(frames.size(), images.size() + 1);
 }
 
+// 498 pictures of 40 x 30 pixels.
+TEST_F(ExportPng, TheLogIsSmallerThanItsPictures) {
+  EXPECT_LT(std::filesystem::file_size(results() / log_file_name), 498U * 40 * 30 / 2);
+}
+
 TEST_F(ExportPng, IsTheSameEachTimeAndAPictureForAll) {
   const std::string film = exported();
   EXPECT_EQ(film, exported());

@@ -67,7 +67,9 @@ class WatchedDevice : public ServedDevice {
 // One kind of drive: its device, the two ends of its line, and the program that is killed.
 class KilledGrbl {
  public:
-  static constexpr double braking = 0.15;  // s; from 10,000 microsteps/s at 100,000 microsteps/s^2.
+  // s; it begins with the next segment, at most 0.06 s later, and takes 0.1 s from 10,000 microsteps/s at
+  // 100,000 microsteps/s^2.
+  static constexpr double braking = 0.18;
 
   std::unique_ptr<Link> device_end() { return std::move(pair_.device); }
   WatchedDevice& device() { return device_; }

@@ -99,7 +99,7 @@ mkdir -p docs/studies build/studies
 {
   echo "# Fuzzing"
   echo
-  echo "Each fuzz target tests one reader of external text, pictures or protocols. It runs its corpus (\`tests/corpus/TARGET\`) and mutations of this corpus with a given seed. Targets for which any bytes are valid input also run random bytes. AddressSanitizer and LeakSanitizer are on. UndefinedBehaviorSanitizer is on too, except for targets that draw or measure pictures (GCC $(g++ -dumpfullversion)). A crash, an exception that is not caught, or a duration of over half a minute is a failure."
+  echo "Each fuzz target tests one reader of external text, pictures or protocols. A fuzz target runs its corpus (\`tests/corpus/TARGET\`) and mutations of this corpus with a given seed. Targets for which any bytes are valid input also run random bytes. AddressSanitizer and LeakSanitizer are on. UndefinedBehaviorSanitizer is on too, except for targets that draw or measure pictures (GCC $(g++ -dumpfullversion)). A crash, an exception that is not caught, or a duration of over half a minute is a failure."
   echo
   echo '```console'
   echo "\$ ./dev study fuzz 1000000 1"

@@ -148,9 +148,15 @@ TEST_F(ExportPng, HasEachImageOfTheLogForItsTime) {
   EXPECT_EQ(frames.size(), images.size() + 1);
 }
 
-// 498 pictures of 40 x 30 pixels.
-TEST_F(ExportPng, TheLogIsSmallerThanItsPictures) {
-  EXPECT_LT(std::filesystem::file_size(results() / log_file_name), 498U * 40 * 30 / 2);
+TEST(FilmedLog, IsSmallerThanItsPictures) {
+  std::string text = filmed_arm;
+  text.replace(text.find("width = 40, height = 30, frame_rate = 7"), 39, "frame_rate = 20");
+  text.replace(text.find("duration = 70"), 13, "duration = 1");
+  const TemporaryFolder folder;
+  Quiet progress;
+  (void)run_experiment(parse_experiment(text, "x.toml"), folder.path(), progress);
+  // 41 pictures of 640 x 480 pixels.
+  EXPECT_LT(std::filesystem::file_size(folder.path() / log_file_name), 41U * 640 * 480 / 10);
 }
 
 TEST_F(ExportPng, IsTheSameEachTimeAndAPictureForAll) {

@@ -85,7 +85,12 @@ LightChange light_change(std::span<const float> background, std::span<const floa
     normal(0, 0) += prior, right[0] += prior;
     normal(1, 1) += 1e-9;
     const Eigen::Vector2d solution = normal.inverse() * right;
+    // Of the brightest pixels, which change the most.
+    constexpr double brightest = 255, settled = 1e-3;
+    const double change =
+        std::abs(solution[0] - light.gain) * brightest + std::abs(solution[1] - light.offset);
     light.gain = solution[0], light.offset = solution[1];
+    if (change < settled) break;
   }
   return light;
 }
@@ -101,7 +106,7 @@ Surroundings in_this_light(const cv::Mat& background, const cv::Mat& picture, co
   cv::split(background, grounds), cv::split(picture, pictures);
   Surroundings result;
   double variance = 0;
-  constexpr int samples = 40000;
+  constexpr int samples = 10000;
   const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(picture.total()) / samples)));
   for (std::size_t c = 0; c < grounds.size(); ++c) {
     std::vector<float> from, to;

@@ -1,16 +1,19 @@
 // One badge says in which condition the rig is, and the run that is recorded, and the same is in the run's report.
 import { fileURLToPath } from 'node:url';
 import { describe, expect, test } from 'vitest';
-import { slide, until } from './browser';
+import { slide, until, type Opened } from './browser';
 import { opened_before, recorded, started } from './opened';
 import { program } from './program';
 
 const file = (name: string) => fileURLToPath(new URL(name, import.meta.url));
 
+const badge_says = ({ page }: Opened, word: string) =>
+  until(() => page.evaluate((wanted) => document.getElementById('condition')?.textContent === wanted, word), 8000, `not ${word}`);
+
 describe.skipIf(!program)('the condition', () => {
   describe('of a rig', () => {
     const opened = opened_before(() => started(['view', file('run.toml')]), 'live');
-    const says = (word: string) => until(() => opened.page.evaluate((wanted) => document.getElementById('condition')?.textContent === wanted, word), 8000, `not ${word}`);
+    const says = (word: string) => badge_says(opened, word);
 
     test('is idle, running, halted, done', async () => {
       const { page, complaints } = opened;
@@ -35,7 +38,7 @@ describe.skipIf(!program)('the condition', () => {
 
     test('is moving, then idle; unsafe where a task violates a limit', async () => {
       const { page, complaints } = opened;
-      const says = (word: string) => until(() => page.evaluate((wanted) => document.getElementById('condition')?.textContent === wanted, word), 8000, `not ${word}`);
+      const says = (word: string) => badge_says(opened, word);
       await says('IDLE');
       // At most half a radian per second.
       const field = page.locator('.section').nth(1).locator('.number').first();
@@ -62,7 +65,7 @@ describe.skipIf(!program)('the condition', () => {
     test('is failed, with the reason', async () => {
       const { page, complaints } = opened;
       await page.getByRole('button', { name: 'Run tasks' }).click();
-      await until(() => page.evaluate(() => document.getElementById('condition')?.textContent === 'FAILED'), 15000, 'not FAILED');
+      await badge_says(opened, 'FAILED');
       expect(await page.locator('#condition').getAttribute('title')).toMatch(/^The tasks failed\. hurry: saturated: section 1: bend rate/);
       expect(complaints).toEqual([]);
     });
@@ -73,7 +76,7 @@ describe.skipIf(!program)('the condition', () => {
 
     test('is that of the time that is shown, and its report has the badge of its end', async () => {
       const { page, complaints } = opened;
-      const says = (word: string) => until(() => page.evaluate((wanted) => document.getElementById('condition')?.textContent === wanted, word), 8000, `not ${word}`);
+      const says = (word: string) => badge_says(opened, word);
       await slide(page, '#scrub', 1);
       await says('RUNNING');
       await slide(page, '#scrub', 3);
